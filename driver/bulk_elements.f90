@@ -1,0 +1,198 @@
+module bulk_elements
+  !! The elements of the mesh as the driver keeps them: what each one precomputed (`table`), its history, and the one
+  !! loop that calls them all. Memory is what the elements ask for, element by element.
+  use kinds, only: wp, i8
+  use status_codes, only: ok
+  use model_data, only: model_type
+  use equation_system, only: equation_system_type
+  use user_element, only: element_geometry, element_state, element_energy, task_prepare, task_tangent
+  implicit none (type, external)
+  private
+  public :: bulk_type, prepare_bulk, assemble_bulk, commit_bulk, roll_back_bulk, bind_geometry, add_prescribed_force
+
+  type :: bulk_type
+    integer(i8), allocatable :: table_ptr(:)        !! (ne+1) where an element's table begins
+    integer(i8), allocatable :: hist_ptr(:)         !! (ne+1) where its history begins
+    real(wp), allocatable :: table(:)
+    real(wp), allocatable :: hist(:), hist_n(:)     !! of this step; committed
+    integer :: nen_max = 0
+  end type bulk_type
+
+contains
+
+  subroutine bind_geometry(model, e, geo, xe)
+    !! Point geo at element e and gather its control points.
+    type(model_type), intent(in), target :: model
+    integer, intent(in) :: e
+    type(element_geometry), intent(inout) :: geo
+    real(wp), contiguous, target, intent(inout) :: xe(:, :)   !! work (ndm, >= 2*nen): points, then weights
+    integer, pointer, contiguous :: nodes(:)
+    integer :: a
+
+    nodes => model%mesh%connectivity(e)
+    geo%ndm = model%ndm
+    geo%dp = model%mesh%dp(e)
+    geo%nen = size(nodes)
+    geo%degree = model%mesh%degree(:, e)
+    geo%ce => model%mesh%operator(e)
+    do a = 1, geo%nen
+      xe(:, a) = model%x(:, nodes(a))
+    end do
+    geo%xe => xe(:, 1:geo%nen)
+  end subroutine bind_geometry
+
+  subroutine prepare_bulk(model, bulk, status, element)
+    !! Size the stores and let every element precompute what does not change.
+    type(model_type), intent(inout), target :: model
+    type(bulk_type), intent(inout), target :: bulk
+    integer, intent(out) :: status     !! of the first element that failed
+    integer, intent(out) :: element    !! that element
+    real(wp), allocatable, target :: xe(:, :), we(:)
+    real(wp) :: fe(0, 0), ke(0, 0, 0, 0)
+    type(element_geometry) :: geo
+    type(element_state) :: state
+    type(element_energy) :: energy
+    integer :: e, ne, ntable, nhist
+
+    ne = model%mesh%ne
+    status = ok
+    element = 0
+    bulk%nen_max = 0
+    do e = 1, ne
+      bulk%nen_max = max(bulk%nen_max, model%mesh%nen(e))
+    end do
+    allocate (xe(model%ndm, bulk%nen_max), we(bulk%nen_max))
+    if (allocated(bulk%table_ptr)) deallocate (bulk%table_ptr, bulk%hist_ptr, bulk%table, bulk%hist, bulk%hist_n)
+    allocate (bulk%table_ptr(ne + 1), bulk%hist_ptr(ne + 1))
+    bulk%table_ptr(1) = 0
+    bulk%hist_ptr(1) = 0
+    do e = 1, ne
+      call bind_geometry(model, e, geo, xe)
+      call model%materials(model%material_of(e))%element%sizes(geo, ntable, nhist)
+      bulk%table_ptr(e + 1) = bulk%table_ptr(e) + ntable
+      bulk%hist_ptr(e + 1) = bulk%hist_ptr(e) + nhist
+    end do
+    allocate (bulk%table(bulk%table_ptr(ne + 1)))
+    allocate (bulk%hist(bulk%hist_ptr(ne + 1)), source=0.0_wp)
+    allocate (bulk%hist_n(bulk%hist_ptr(ne + 1)), source=0.0_wp)
+    do e = 1, ne
+      call bind_geometry(model, e, geo, xe)
+      we(1:geo%nen) = model%w(model%mesh%connectivity(e))
+      geo%we => we(1:geo%nen)
+      geo%table => bulk%table(bulk%table_ptr(e) + 1:bulk%table_ptr(e + 1))
+      state%hist => bulk%hist(bulk%hist_ptr(e) + 1:bulk%hist_ptr(e + 1))
+      state%hist_n => bulk%hist_n(bulk%hist_ptr(e) + 1:bulk%hist_ptr(e + 1))
+      call model%materials(model%material_of(e))%element%evaluate(task_prepare, geo, state, fe, ke, energy, status)
+      if (status /= ok) then
+        element = e
+        return
+      end if
+    end do
+  end subroutine prepare_bulk
+
+  subroutine assemble_bulk(model, bulk, task, u, un, du, moves, time, dt, system, f, stored, dissipated, status, element)
+    !! Add every element's force to f and, in task_tangent, its tangent to the matrix. In elements of which a node
+    !! `moves` with a prescribed increment du, the force is that after the increment, to first order: ke du is added.
+    type(model_type), intent(inout), target :: model
+    type(bulk_type), intent(inout), target :: bulk
+    integer, intent(in) :: task                     !! task_residual or task_tangent
+    real(wp), intent(in) :: u(:, :), un(:, :)       !! control values now and committed (ndf,nn)
+    real(wp), intent(in) :: du(:, :)                !! prescribed increments not yet in u (ndf,nn)
+    logical, intent(in) :: moves(:)                 !! (nn) du is not zero there; size 0: nowhere
+    real(wp), intent(in) :: time, dt
+    type(equation_system_type), intent(inout) :: system
+    real(wp), intent(inout) :: f(:, :)              !! nodal forces (ndf,nn)
+    real(wp), intent(inout) :: stored, dissipated   !! energies
+    integer, intent(out) :: status, element         !! the first failure and its element
+    real(wp), target :: xe(model%ndm, bulk%nen_max), ue(model%ndf*bulk%nen_max), une(model%ndf*bulk%nen_max)
+    real(wp), target :: we(bulk%nen_max), fwork(model%ndf*bulk%nen_max)
+    real(wp), allocatable, target :: kwork(:)
+    real(wp), pointer, contiguous :: fe(:, :), ke(:, :, :, :)
+    integer, pointer, contiguous :: nodes(:)
+    type(element_geometry) :: geo
+    type(element_state) :: state
+    type(element_energy) :: energy
+    integer :: e, a, ndf, n
+
+    allocate (kwork(merge((model%ndf*bulk%nen_max)**2, 0, task == task_tangent)))
+    status = ok
+    element = 0
+    state%time = time
+    state%dt = dt
+    do e = 1, model%mesh%ne
+      associate (el => model%materials(model%material_of(e))%element)
+        nodes => model%mesh%connectivity(e)
+        n = size(nodes)
+        ndf = el%ndf
+        call bind_geometry(model, e, geo, xe)
+        do a = 1, n
+          we(a) = model%w(nodes(a))
+        end do
+        geo%we => we(1:n)
+        geo%table => bulk%table(bulk%table_ptr(e) + 1:bulk%table_ptr(e + 1))
+        state%hist => bulk%hist(bulk%hist_ptr(e) + 1:bulk%hist_ptr(e + 1))
+        state%hist_n => bulk%hist_n(bulk%hist_ptr(e) + 1:bulk%hist_ptr(e + 1))
+        state%ue(1:ndf, 1:n) => ue
+        state%un(1:ndf, 1:n) => une
+        do a = 1, n
+          state%ue(:, a) = u(1:ndf, nodes(a))
+          state%un(:, a) = un(1:ndf, nodes(a))
+        end do
+        fe(1:ndf, 1:n) => fwork
+        if (task == task_tangent) then
+          ke(1:ndf, 1:n, 1:ndf, 1:n) => kwork
+        else
+          ke(1:0, 1:0, 1:0, 1:0) => kwork
+        end if
+        call el%evaluate(task, geo, state, fe, ke, energy, status)
+        if (status /= ok) then
+          element = e
+          return
+        end if
+        stored = stored + energy%stored
+        dissipated = dissipated + energy%dissipated
+        if (task == task_tangent) then
+          if (size(moves) > 0) then
+            if (any(moves(nodes))) call add_prescribed_force(ke, du(1:ndf, nodes), el%symmetric, fe)
+          end if
+          call system%add_element(e, nodes, ke, el%symmetric)
+        end if
+        do a = 1, n
+          f(1:ndf, nodes(a)) = f(1:ndf, nodes(a)) + fe(:, a)
+        end do
+      end associate
+    end do
+  end subroutine assemble_bulk
+
+  pure subroutine add_prescribed_force(ke, du, symmetric, fe)
+    !! fe := fe + ke du, with ke as its element fills it.
+    real(wp), contiguous, intent(in) :: ke(:, :, :, :)  !! (ndf,nen,ndf,nen)
+    real(wp), intent(in) :: du(:, :)                    !! (ndf,nen)
+    logical, intent(in) :: symmetric                    !! only blocks a >= b are filled
+    real(wp), contiguous, intent(inout) :: fe(:, :)     !! (ndf,nen)
+    integer :: a, b, i, k
+
+    do b = 1, size(fe, 2)
+      do a = merge(b, 1, symmetric), size(fe, 2)
+        do k = 1, size(fe, 1)
+          do i = 1, size(fe, 1)
+            fe(i, a) = fe(i, a) + ke(i, a, k, b)*du(k, b)
+            if (symmetric .and. a > b) fe(k, b) = fe(k, b) + ke(i, a, k, b)*du(i, a)
+          end do
+        end do
+      end do
+    end do
+  end subroutine add_prescribed_force
+
+  subroutine commit_bulk(bulk)
+    !! The step converged: its history is the new committed one.
+    type(bulk_type), intent(inout) :: bulk
+    if (size(bulk%hist) > 0) bulk%hist_n = bulk%hist
+  end subroutine commit_bulk
+
+  subroutine roll_back_bulk(bulk)
+    !! The step is rejected.
+    type(bulk_type), intent(inout) :: bulk
+    if (size(bulk%hist) > 0) bulk%hist = bulk%hist_n
+  end subroutine roll_back_bulk
+end module bulk_elements

@@ -1,0 +1,285 @@
+module contact_search
+  !! Which master facet does a slave point project on, and where (Tables 1-3 of the paper)?
+  !!
+  !! Local: from the last facet and xi; a projection that leaves a facet goes on to its neighbour. Global, for points
+  !! without a facet: a tree of bounding boxes gives the facets nearby, nearest box first; the nearest valid
+  !! projection wins. Between two facets that meet in a kink which bends away from the point neither projection is
+  !! valid: there the facet is extended by a small part of its length. Beyond the master's edge a point is unpaired.
+  use kinds, only: wp
+  use status_codes, only: ok, outside_facet
+  use facets, only: facet_surface
+  use box_tree, only: box_tree_type
+  use rational_basis, only: shape_functions
+  use closest_point, only: projection_report, homogeneous_points, closest_point_of_bezier, find_closest_point_global
+  implicit none (type, external)
+  private
+  public :: master_search, start_search, move_master, pair_point
+
+  real(wp), parameter :: extension = 0.05_wp  !! how far a facet may be extended at a kink, in xi
+  integer, parameter :: most_hops = 64        !! facets a point may cross in one iteration before the tree is asked
+  integer, parameter :: most_candidates = 16  !! facets that a global search looks at
+
+  type :: master_search
+    !! The master surface in its current position.
+    integer :: ndm = 0, dp = 0
+    real(wp) :: reach = 0                       !! points farther away stay unpaired [length]
+    integer :: moved = 0                        !! counts the positions of the master
+    integer :: searches = 0                     !! global searches since the start
+    real(wp), allocatable :: x(:, :)            !! current position of every node (ndm,nn) [length]
+    integer, allocatable :: q_ptr(:)            !! (nf+1) first homogeneous Bezier point of each facet, from 1
+    real(wp), allocatable :: q(:, :)            !! homogeneous Bezier points (ndm+1,:)
+    integer, allocatable :: q_moved(:)          !! (nf) position for which q holds
+    type(box_tree_type) :: tree
+    real(wp), allocatable :: lo(:, :), hi(:, :) !! boxes of the facets (ndm,nf) [length]
+    integer :: boxes_moved = -1                 !! position for which the boxes hold
+  end type master_search
+
+contains
+
+  subroutine start_search(search, ndm, surface, reach)
+    type(master_search), intent(out) :: search
+    integer, intent(in) :: ndm
+    type(facet_surface), intent(in) :: surface   !! master
+    real(wp), intent(in) :: reach                !! [length]
+    integer :: f, nf
+
+    nf = surface%set%ne
+    search%ndm = ndm
+    search%dp = ndm - 1
+    search%reach = reach
+    allocate (search%q_ptr(nf + 1), search%q_moved(nf), search%lo(ndm, nf), search%hi(ndm, nf))
+    search%q_moved = -1
+    search%q_ptr(1) = 1
+    do f = 1, nf
+      search%q_ptr(f + 1) = search%q_ptr(f) + surface%set%nb(f)
+    end do
+    allocate (search%q(ndm + 1, search%q_ptr(nf + 1) - 1))
+  end subroutine start_search
+
+  subroutine move_master(search, x)
+    !! New current positions; what depends on them is renewed when it is needed.
+    type(master_search), intent(inout) :: search
+    real(wp), intent(in) :: x(:, :)              !! (ndm,nn) [length]
+
+    search%moved = search%moved + 1
+    search%x = x
+  end subroutine move_master
+
+  subroutine form_facet(search, surface, w, f)
+    !! Homogeneous Bezier points of facet f in the current position.
+    type(master_search), intent(inout) :: search
+    type(facet_surface), intent(in), target :: surface
+    real(wp), intent(in) :: w(:)
+    integer, intent(in) :: f
+    integer, pointer, contiguous :: nodes(:)
+
+    if (search%q_moved(f) == search%moved) return
+    nodes => surface%set%connectivity(f)
+    call homogeneous_points(w(nodes), surface%set%operator(f), search%x(:, nodes), &
+                            search%q(:, search%q_ptr(f):search%q_ptr(f + 1) - 1))
+    search%q_moved(f) = search%moved
+  end subroutine form_facet
+
+  subroutine form_boxes(search, surface, w)
+    !! Boxes of all facets: those of their Bezier points, which contain the facet when the weights are positive.
+    type(master_search), intent(inout) :: search
+    type(facet_surface), intent(in) :: surface
+    real(wp), intent(in) :: w(:)
+    integer :: f, b, n
+
+    if (search%boxes_moved == search%moved) return
+    n = search%ndm
+    do f = 1, surface%set%ne
+      call form_facet(search, surface, w, f)
+      search%lo(:, f) = huge(1.0_wp)
+      search%hi(:, f) = -huge(1.0_wp)
+      do b = search%q_ptr(f), search%q_ptr(f + 1) - 1
+        search%lo(:, f) = min(search%lo(:, f), search%q(1:n, b)/search%q(n + 1, b))
+        search%hi(:, f) = max(search%hi(:, f), search%q(1:n, b)/search%q(n + 1, b))
+      end do
+    end do
+    if (search%tree%nnodes == 0) then
+      call search%tree%build(search%lo, search%hi)
+    else
+      call search%tree%refit(search%lo, search%hi)
+    end if
+    search%boxes_moved = search%moved
+  end subroutine form_boxes
+
+  subroutine pair_point(search, surface, w, xs, facet, xi)
+    !! Pair a slave point. On entry facet and xi are the last pairing (facet 0: none); on return the new one.
+    type(master_search), intent(inout) :: search
+    type(facet_surface), intent(in), target :: surface
+    real(wp), intent(in) :: w(:)                 !! weights of all nodes
+    real(wp), intent(in) :: xs(:)                !! slave point (ndm) [length]
+    integer, intent(inout) :: facet
+    real(wp), intent(inout) :: xi(:)             !! (dp)
+    type(projection_report) :: report
+    integer :: hop, f, status, last, previous, side
+    real(wp) :: trial(size(xi))
+    logical :: found
+
+    if (facet > 0) then
+      f = facet
+      trial = xi
+      last = 0
+      do hop = 1, most_hops
+        call form_facet(search, surface, w, f)
+        call closest_point_of_bezier(surface%set%degree(1:search%dp, f), &
+          search%q(:, search%q_ptr(f):search%q_ptr(f + 1) - 1), xs, trial, report, status)
+        if (status == ok) then
+          facet = f
+          xi = trial
+          if (report%distance > search%reach) facet = 0
+          return
+        end if
+        if (status /= outside_facet) exit
+        side = report%sides(1)
+        if (side == 0) side = report%sides(2)
+        previous = last
+        last = f
+        f = surface%neighbour(side, f)
+        if (f == 0) exit
+        if (f == previous) then
+          ! to and fro across a kink: neither facet holds the projection, extend the one that misses less
+          call extend_projection(search, surface, w, xs, last, trial, found)
+          if (found) then
+            facet = last
+            xi = trial
+            return
+          end if
+          exit
+        end if
+        call carry_over(surface, last, f, side, trial)
+      end do
+    end if
+    call pair_globally(search, surface, w, xs, facet, xi)
+  end subroutine pair_point
+
+  pure subroutine carry_over(surface, from, to, side, xi)
+    !! A first guess on the next facet, just inside the common side.
+    type(facet_surface), intent(in) :: surface
+    integer, intent(in) :: from, to, side
+    real(wp), intent(inout) :: xi(:)
+    integer :: s
+
+    do s = 1, size(surface%neighbour, 1)
+      if (surface%neighbour(s, to) == from) exit
+    end do
+    if (s > size(surface%neighbour, 1)) s = side
+    if (size(xi) == 1) then
+      xi(1) = merge(0.0_wp, 1.0_wp, s == 1)
+    else
+      ! neighbouring facets of one patch run alike; where they do not, the middle of the side is a safe start
+      if ((s + 1)/2 /= (side + 1)/2) xi = 0.5_wp
+      xi((s + 1)/2) = merge(0.0_wp, 1.0_wp, mod(s, 2) == 1)
+    end if
+  end subroutine carry_over
+
+  subroutine pair_globally(search, surface, w, xs, facet, xi)
+    type(master_search), intent(inout) :: search
+    type(facet_surface), intent(in), target :: surface
+    real(wp), intent(in) :: w(:)
+    real(wp), intent(in) :: xs(:)
+    integer, intent(out) :: facet
+    real(wp), intent(inout) :: xi(:)
+    integer :: near(most_candidates), n, c, f, status, edge
+    integer, pointer, contiguous :: nodes(:)
+    real(wp) :: trial(size(xi)), best, edge_best, edge_xi(size(xi))
+    type(projection_report) :: report
+    logical :: found
+
+    call form_boxes(search, surface, w)
+    call search%tree%candidates(search%lo, search%hi, xs, search%reach, near, n)
+    search%searches = search%searches + 1
+    facet = 0
+    edge = 0
+    best = search%reach
+    edge_best = search%reach
+    do c = 1, n
+      f = near(c)
+      if (sum(max(search%lo(:, f) - xs, 0.0_wp, xs - search%hi(:, f))**2) > best**2) exit
+      nodes => surface%set%connectivity(f)
+      call find_closest_point_global(surface%set%degree(1:search%dp, f), w(nodes), surface%set%operator(f), &
+                                     search%x(:, nodes), xs, trial, report, status)
+      if (status == ok .and. report%distance < best) then
+        best = report%distance
+        facet = f
+        xi = trial
+      else if (status == outside_facet .and. report%distance < edge_best) then
+        edge_best = report%distance
+        edge = f
+        edge_xi = trial
+      end if
+    end do
+    if (facet > 0 .or. edge == 0) return
+    if (any([(surface%neighbour(f, edge) == 0, f=1, 2*search%dp)])) then
+      ! beyond the master's own edge, unless the point left through a side with a neighbour
+      nodes => surface%set%connectivity(edge)
+      trial = edge_xi
+      call find_closest_point_global(surface%set%degree(1:search%dp, edge), w(nodes), surface%set%operator(edge), &
+                                     search%x(:, nodes), xs, trial, report, status)
+      do c = 1, search%dp
+        if (report%sides(c) == 0) cycle
+        if (surface%neighbour(report%sides(c), edge) == 0) return
+      end do
+    end if
+    call extend_projection(search, surface, w, xs, edge, edge_xi, found)
+    if (found) then
+      facet = edge
+      xi = edge_xi
+    end if
+  end subroutine pair_globally
+
+  subroutine extend_projection(search, surface, w, xs, facet, xi, found)
+    !! Newton on the facet's own continuation, a little beyond its bounds.
+    type(master_search), intent(in) :: search
+    type(facet_surface), intent(in), target :: surface
+    real(wp), intent(in) :: w(:)
+    real(wp), intent(in) :: xs(:)
+    integer, intent(in) :: facet
+    real(wp), intent(inout) :: xi(:)
+    logical, intent(out) :: found
+    integer, pointer, contiguous :: nodes(:)
+    real(wp) :: shp(surface%set%nen(facet)), dshp(search%dp, surface%set%nen(facet))
+    real(wp) :: d2shp(search%dp*(search%dp + 1)/2, surface%set%nen(facet))
+    real(wp) :: d(search%ndm), tau(search%ndm, 2), curve(search%ndm, 3), f(2), a(3), step(2), det
+    integer :: iteration, status, k, node
+
+    found = .false.
+    nodes => surface%set%connectivity(facet)
+    do iteration = 1, 20
+      call shape_functions(surface%set%degree(1:search%dp, facet), w(nodes), surface%set%operator(facet), xi, 2, &
+                           shp, dshp, d2shp, status)
+      if (status /= ok) return
+      d = xs
+      tau = 0
+      curve = 0
+      do node = 1, size(nodes)
+        d = d - shp(node)*search%x(:, nodes(node))
+        do k = 1, search%dp
+          tau(:, k) = tau(:, k) + dshp(k, node)*search%x(:, nodes(node))
+        end do
+        do k = 1, size(d2shp, 1)
+          curve(:, k) = curve(:, k) + d2shp(k, node)*search%x(:, nodes(node))
+        end do
+      end do
+      f = [dot_product(tau(:, 1), d), dot_product(tau(:, 2), d)]
+      a(1) = dot_product(tau(:, 1), tau(:, 1)) - dot_product(d, curve(:, 1))
+      if (search%dp == 1) then
+        if (.not. a(1) > 0) return
+        step = [f(1)/a(1), 0.0_wp]
+      else
+        a(2) = dot_product(tau(:, 2), tau(:, 2)) - dot_product(d, curve(:, 2))
+        a(3) = dot_product(tau(:, 1), tau(:, 2)) - dot_product(d, curve(:, 3))
+        det = a(1)*a(2) - a(3)**2
+        if (.not. (a(1) > 0 .and. det > 0)) return
+        step = [a(2)*f(1) - a(3)*f(2), a(1)*f(2) - a(3)*f(1)]/det
+      end if
+      xi = xi + step(1:search%dp)
+      if (any(xi < -extension) .or. any(xi > 1 + extension)) return
+      if (all(abs(step) <= 1.0e-14_wp)) exit
+    end do
+    found = all(abs(step) <= 1.0e-12_wp)
+  end subroutine extend_projection
+end module contact_search

@@ -1,0 +1,744 @@
+module deck_reader
+  !! A deck, record by record. The commands of a mesh or a solution are read by others, on top of
+  !! this:
+  !!
+  !!     type(deck) :: input
+  !!     type(record) :: rec
+  !!     call input%open('ironing.inp', settings, log)      ! settings: name=value of the command line
+  !!     do
+  !!       call input%next_command(rec, log)                ! skips blank lines, names the command for messages
+  !!       if (rec%end_of_deck) exit
+  !!       select case (rec%key(1))                         ! four letters, lower case
+  !!       case ('coor')
+  !!         do
+  !!           call input%next_record(rec, log)
+  !!           if (rec%ends_set) exit                       ! blank line or end of deck
+  !!           call rec%integer(1, id, log, 'node number')
+  !!           call rec%numbers(3, x(1:ndm), log, 'coordinates')
+  !!         end do
+  !!       case default
+  !!         call input%refuse_command(rec, [character(11) :: 'COORdinates', ...], log)
+  !!       end select
+  !!     end do
+  !!     call input%finish(log)                             ! settings that the deck does not have, IF without ENDIf
+  !!     if (log%error_count() > 0) ...
+  !!
+  !! (access to the items of a record: module deck_record). `push_back` gives a record back, to be
+  !! read again; `skip_set` goes on behind the next blank line. `title`, `full_text`,
+  !! `parameters%count, name(i), text(i)` tell what was read; `place(order)` finds file and line of
+  !! a record of which only `rec%at%order` was kept.
+  !!
+  !! Handled here, and never seen by the commands, wherever they stand (also inside data sets and
+  !! included files):
+  !!
+  !!     FEAP * * title          the first line that is neither blank nor a comment
+  !!     PARAmeter, TABLe        see module parameters; to a blank line
+  !!     INCLude file            relative to the including file, in quotes if it has blanks, commas or =
+  !!     IF expr / ELSEif expr / ELSE / ENDIf     expr is the whole rest of the line; basis == "L" .and. p > 2
+  !!     LOOP n [i] / NEXT       repeats the lines between them, i counts from 1; before BATCh only: between BATCh and END
+  !!                             LOOP and NEXT are solution commands and come as records
+  !!     {expr}                  anywhere in a line: replaced by the value, before anything else (whole numbers without
+  !!                             point); not in comments, the title, and lines that an IF leaves out
+  !!     INTEractive             refused
+  !!
+  !! The first four letters count, in any case (all letters of IF, ELSE, END). A line that begins
+  !! with such a word and goes on with `=` is not that command (`loops = 3`); a name in quotes never
+  !! is. An IF or LOOP ends in the file in which it begins. After an error the reader goes on; a
+  !! condition with an error counts as false.
+  use kinds, only: wp
+  use messages, only: string, deck_place, message_log, name_hint, closest_name, lower_case, &
+    quoted, whole_text, &
+    in_place, edit_distance
+  use number_text, only: equal
+  use expressions, only: symbol_source, value, expression_problem, evaluate, value_text, &
+    unknown_value, &
+    number_value, word_value
+  use deck_record, only: record, logical_line, blank_line, append_text, command_form
+  use deck_source, only: source, source_mark, line_read, file_ended, deck_ended
+  use parameters, only: deck_parameters, setting, command_line_place
+  implicit none (type, external)
+  private
+  public :: deck, record, setting
+
+  integer, parameter :: if_block = 1
+  integer, parameter :: loop_block = 2
+
+  type :: control_block
+    integer :: kind = if_block
+    type(deck_place) :: at                       ! the line that opens it
+    integer :: nesting = 0                       ! files open there
+    logical :: outer_active = .true.             ! is the block itself read?
+    logical :: active = .true.                   ! are its lines read?
+    logical :: taken = .false.                   ! IF: a branch was read
+    logical :: has_else = .false.
+    integer :: pass = 1, passes = 1              ! LOOP
+    character(:), allocatable :: counter
+    type(source_mark) :: begin
+  end type control_block
+
+  type :: deck
+    character(:), allocatable :: title
+    character(:), allocatable :: path
+    type(deck_parameters), pointer :: parameters => null()
+    class(symbol_source), pointer, private :: symbols => null()   ! the same
+    type(source), private :: text
+    type(control_block), allocatable, private :: blocks(:)
+    integer, private :: open_blocks = 0
+    logical, private :: active = .true.
+    logical, private :: in_solution = .false.
+    logical, private :: at_end = .false.
+    logical, private :: line_damaged = .false.
+    logical, private :: is_held = .false.
+    type(record), private :: held                ! given back
+    type(record), private :: control             ! items of INCLude and LOOP
+    type(logical_line), private :: scratch
+    character(:), allocatable, private :: command
+  contains
+    procedure :: open => open_deck
+    procedure :: next_command
+    procedure :: next_record
+    procedure :: push_back
+    procedure :: skip_set
+    procedure :: refuse_command
+    procedure :: finish
+    procedure :: close => close_deck
+    procedure :: place
+    procedure :: full_text
+    procedure, private :: next_text
+    procedure, private :: substitute
+    procedure, private :: read_parameters
+    procedure, private :: read_table
+    procedure, private :: begin_if
+    procedure, private :: next_branch
+    procedure, private :: begin_loop
+    procedure, private :: next_pass
+    procedure, private :: include
+    procedure, private :: condition
+    procedure, private :: push_block
+    procedure, private :: pop_block
+    procedure, private :: find_block
+    procedure, private :: loop_is_skipped
+    procedure, private :: close_blocks
+  end type deck
+
+contains
+
+  subroutine open_deck(self, path, settings, log)
+    class(deck), intent(inout) :: self
+    character(*), intent(in) :: path             !! the deck
+    type(setting), intent(in) :: settings(:)     !! name=value of the command line; [setting ::] if none
+    type(message_log), intent(inout) :: log
+    type(logical_line) :: line
+    type(deck_place) :: at
+    character(:), allocatable :: word
+    integer :: outcome
+
+    allocate (self%parameters)
+    self%symbols => self%parameters
+    call self%parameters%start(settings)
+    allocate (self%blocks(4))
+    self%path = path
+    self%title = ''
+    self%command = ''
+    call self%text%open(path, command_line_place(), log)
+    self%at_end = self%text%nesting() == 0
+    if (self%at_end) return
+    do
+      call self%text%next_line(line, outcome, log)
+      if (outcome == deck_ended) then
+        at%file = path
+        call log%add_error(at, '', 'the deck is empty', 'It begins with "FEAP * * title".')
+        self%at_end = .true.
+        return
+      end if
+      if (line%n > 0) exit
+    end do
+    word = lower_case(line%text(1:scan(line%text(1:line%n) // ' ', ' *,') - 1))
+    if (word(1:min(4, len(word))) == 'feap') then
+      self%title = line%text(min(5, line%n + 1):line%n)
+      do while (verify(self%title, '* ') > 1)
+        self%title = self%title(verify(self%title, '* '):)
+      end do
+      if (verify(self%title, '* ') == 0) self%title = ''
+    else
+      call log%add_error(line%at, '', 'the deck begins with ' // quoted(line%text(1:line%n)), &
+        'Its first line must be "FEAP * * title".')
+      ! a misspelt word is one error, another kind of file would give thousands
+      self%at_end = edit_distance(word, 'feap') > 2
+    end if
+  end subroutine open_deck
+
+  subroutine next_command(self, rec, log)
+    !! The next record that is not blank. Messages name it until the next call.
+    class(deck), intent(inout) :: self
+    type(record), intent(inout) :: rec
+    type(message_log), intent(inout) :: log
+
+    self%command = ''
+    do
+      call self%next_record(rec, log)
+      if (rec%end_of_deck) return
+      if (.not. rec%is_blank) exit
+    end do
+    self%command = command_form(rec%word(1))
+    rec%command = self%command
+  end subroutine next_command
+
+  subroutine next_record(self, rec, log)
+    class(deck), intent(inout) :: self
+    type(record), intent(inout) :: rec
+    type(message_log), intent(inout) :: log
+    character(4) :: word
+    logical :: in_hand
+
+    if (self%is_held) then
+      rec = self%held
+      self%is_held = .false.
+      return
+    end if
+    in_hand = .false.
+    do
+      if (.not. in_hand) call self%next_text(rec%line, word, log)
+      in_hand = .false.
+      rec%is_damaged = self%line_damaged
+      rec%command = self%command
+      if (self%at_end) then
+        call blank_line(rec%line)
+        call rec%split(self%symbols, log)
+        rec%end_of_deck = .true.
+        return
+      end if
+      call rec%split(self%symbols, log)
+      select case (word)
+      case ('para')
+        call self%read_parameters(rec, word, in_hand, log)
+      case ('tabl')
+        call self%read_table(rec, log)
+      case default
+        return
+      end select
+    end do
+  end subroutine next_record
+
+  subroutine push_back(self, rec)
+    !! The next record will be this one again.
+    class(deck), intent(inout) :: self
+    type(record), intent(in) :: rec
+
+    self%held = rec
+    self%is_held = .true.
+  end subroutine push_back
+
+  subroutine skip_set(self, rec, log)
+    !! Goes on behind the next blank line.
+    class(deck), intent(inout) :: self
+    type(record), intent(inout) :: rec           !! afterwards the blank one
+    type(message_log), intent(inout) :: log
+
+    do while (.not. rec%ends_set)
+      call self%next_record(rec, log)
+    end do
+  end subroutine skip_set
+
+  subroutine refuse_command(self, rec, names, log)
+    !! Reports a command that nobody knows, and goes on behind its data set.
+    class(deck), intent(inout) :: self
+    type(record), intent(inout) :: rec
+    character(*), intent(in) :: names(:)         !! the commands that can stand here: COORdinates
+    type(message_log), intent(inout) :: log
+    type(string) :: keys(size(names))
+    character(:), allocatable :: hint
+    integer :: i
+
+    do i = 1, size(names)
+      keys(i)%s = names(i)(1:min(4, len(names)))
+    end do
+    i = closest_name(trim(rec%key(1)), keys)
+    if (i > 0) then
+      hint = 'Did you mean "' // trim(names(i)) // '"?'
+    else
+      hint = name_hint(rec%word(1), names, 'commands')
+    end if
+    rec%command = ''
+    call rec%add_error(log, 'there is no command ' // quoted(rec%word(1)) // ' here', hint)
+    call self%skip_set(rec, log)
+  end subroutine refuse_command
+
+  subroutine finish(self, log)
+    !! To be called where reading ends (end of the deck or STOP).
+    class(deck), intent(inout) :: self
+    type(message_log), intent(inout) :: log
+    type(logical_line) :: line
+    character(4) :: word
+
+    do while (self%open_blocks > 0 .and. .not. self%at_end)
+      call self%next_text(line, word, log)
+    end do
+    call self%parameters%check_settings(log)
+  end subroutine finish
+
+  subroutine close_deck(self)
+    !! Gives the parameters' memory back; records of this deck are no longer of use.
+    class(deck), intent(inout) :: self
+
+    if (associated(self%parameters)) deallocate (self%parameters)
+    nullify (self%symbols)
+  end subroutine close_deck
+
+  function place(self, order) result(at)
+    class(deck), intent(in) :: self
+    integer, intent(in) :: order                 !! rec%at%order of a record
+    type(deck_place) :: at
+
+    at = self%text%place(order)
+  end function place
+
+  function full_text(self) result(text)
+    class(deck), intent(in) :: self
+    character(:), allocatable :: text            !! the deck, then each included file under a line with its name
+    integer :: i
+
+    text = ''
+    do i = 1, self%text%file_count()
+      if (i > 1) text = text // new_line('a') // '! ---- ' // self%text%file_name(i) // &
+        ' ----' // new_line('a')
+      text = text // self%text%file_text(i)
+    end do
+  end function full_text
+
+  subroutine next_text(self, line, word, log)
+    !! The next line that is read, after substitution; follows IF, LOOP and INCLude. Sets at_end.
+    class(deck), intent(inout) :: self
+    type(logical_line), intent(inout) :: line
+    character(4), intent(out) :: word            !! the word of control that it begins with, else ''
+    type(message_log), intent(inout) :: log
+    integer :: outcome
+
+    word = ''
+    self%line_damaged = .false.
+    do while (.not. self%at_end)
+      call self%text%next_line(line, outcome, log)
+      if (outcome /= line_read) then
+        call self%close_blocks(log)
+        self%at_end = outcome == deck_ended
+        cycle
+      end if
+      word = control_word(line%text(1:line%n))
+      select case (word)
+      case ('if')
+        call self%begin_if(line, log)
+        cycle
+      case ('elif', 'else', 'endi')
+        call self%next_branch(line, word, log)
+        cycle
+      case ('loop', 'next')
+        if (.not. self%in_solution) then
+          if (word == 'loop') call self%begin_loop(line, log)
+          if (word == 'next') call self%next_pass(line, log)
+          cycle
+        end if
+      end select
+      if (.not. self%active) cycle
+      call self%substitute(line, log)
+      word = control_word(line%text(1:line%n))
+      select case (word)
+      case ('incl')
+        call self%include(line, log)
+        cycle
+      case ('inte')
+        call log%add_error(line%at, 'INTEractive', 'there is no interactive mode', &
+          'Write the solution commands between BATCh and END.')
+        cycle
+      case ('batc')
+        self%in_solution = .true.
+      case ('end')
+        self%in_solution = .false.
+      end select
+      return
+    end do
+  end subroutine next_text
+
+  pure function control_word(text) result(word)
+    !! if, elif, else, endi, loop, next, incl, para, tabl, inte, batc, end; '' for anything else.
+    character(*), intent(in) :: text
+    character(4) :: word
+    character(:), allocatable :: first
+    integer :: n, k
+
+    word = ''
+    if (len(text) < 2) return
+    if (scan(text(1:1), 'ieElLnNpPtTbBI') == 0) return
+    n = scan(text, ' ,=(') - 1
+    if (n < 0) n = len(text)
+    first = lower_case(text(1:n))
+    k = verify(text(n+1:), ' ')
+    if (k > 0) then
+      k = k + n
+      if (text(k:k) == '=' .and. text(k:min(k+1, len(text))) /= '==') return
+    end if
+    select case (first)
+    case ('if', 'end')
+      word = first
+      return
+    case ('else')
+      word = 'else'
+      if (k > 0) then
+        if (lower_case(text(k:min(k+1, len(text)))) == 'if' .and. verify(text(k+2:min(k+2, &
+          len(text))), ' (') == 0) &
+          word = 'elif'
+      end if
+      return
+    end select
+    if (n < 4) return
+    select case (first(1:4))
+    case ('loop', 'next', 'incl', 'para', 'tabl', 'batc', 'endi')
+      word = first(1:4)
+    case ('else')
+      word = 'else'
+      if (first(5:) == 'if') word = 'elif'
+    case ('inte')
+      if (n == 4 .or. first(5:min(6, n)) == 'ra') word = 'inte'
+    end select
+  end function control_word
+
+  subroutine substitute(self, line, log)
+    !! Replaces {expr} by its value, inner braces first.
+    class(deck), intent(inout) :: self
+    type(logical_line), intent(inout) :: line
+    type(message_log), intent(inout) :: log
+    integer, parameter :: deepest = 20
+    type(expression_problem) :: problem
+    type(value) :: v
+    integer :: opening(deepest), depth, i, k
+
+    if (index(line%text(1:line%n), '{') == 0) return
+    call blank_line(self%scratch)
+    depth = 0
+    k = 1
+    do i = 1, line%n
+      if (k <= line%joins) then
+        if (line%join_column(k) == i) then
+          line%join_column(k) = self%scratch%n + 1   ! continuations move with the text
+          k = k + 1
+        end if
+      end if
+      if (line%text(i:i) == '{' .and. depth < deepest) then
+        depth = depth + 1
+        opening(depth) = self%scratch%n + 1
+        call append_text(self%scratch, '{')
+      else if (line%text(i:i) == '}' .and. depth > 0) then
+        call evaluate(self%scratch%text(opening(depth)+1:self%scratch%n), self%symbols, v, problem)
+        if (problem%found) call log%add_error(line%at, '', problem%fact, problem%remedy)
+        if (v%kind == unknown_value) self%line_damaged = .true.
+        self%scratch%n = opening(depth) - 1
+        call append_text(self%scratch, value_text(v))
+        depth = depth - 1
+      else
+        call append_text(self%scratch, line%text(i:i))
+      end if
+    end do
+    if (depth > 0) then
+      call log%add_error(line%at, '', '"}" is missing behind ' // &
+        quoted(self%scratch%text(opening(depth):self%scratch%n)), '')
+      self%line_damaged = .true.
+    end if
+    line%n = 0
+    call append_text(line, self%scratch%text(1:self%scratch%n))
+  end subroutine substitute
+
+  subroutine read_parameters(self, rec, word, in_hand, log)
+    class(deck), intent(inout) :: self
+    type(record), intent(inout) :: rec           !! the record PARAmeter
+    character(4), intent(out) :: word            !! control word of the line in hand
+    logical, intent(out) :: in_hand              !! rec%line is not a parameter, but what comes next
+    type(message_log), intent(inout) :: log
+
+    rec%command = 'PARAmeter'
+    if (rec%count > 1) call rec%add_error(log, quoted(rec%rest(2)) // ' is unexpected', &
+      'Parameters stand on lines of their own, name = value, to a blank line.')
+    self%text%keep_comments = .true.
+    in_hand = .false.
+    do
+      call self%next_text(rec%line, word, log)
+      if (self%at_end) exit
+      if (rec%line%n == 0) exit
+      if (index(rec%line%text(1:rec%line%n), '=') == 0) then
+        call log%add_error(rec%line%at, 'PARAmeter', 'expected name = value, found ' // &
+          quoted(rec%line%text(1:rec%line%n)), 'A blank line ends the parameters.')
+        in_hand = .true.
+        exit
+      end if
+      if (.not. allocated(rec%line%comment)) rec%line%comment = ''
+      call self%parameters%assign(rec%line%text(1:rec%line%n), rec%line%comment, &
+        self%line_damaged, &
+        rec%line%at, log)
+    end do
+    self%text%keep_comments = .false.
+  end subroutine read_parameters
+
+  subroutine read_table(self, rec, log)
+    class(deck), intent(inout) :: self
+    type(record), intent(inout) :: rec           !! the record TABLe name
+    type(message_log), intent(inout) :: log
+    character(4) :: word
+
+    rec%command = 'TABLe'
+    call rec%check_count(2, 2, log, 'TABLe name')
+    call self%parameters%begin_table(rec%word(2), rec%at, log)
+    do
+      call self%next_text(rec%line, word, log)
+      if (self%at_end) return
+      rec%is_damaged = self%line_damaged
+      call rec%split(self%symbols, log)
+      if (rec%is_blank) return
+      call self%parameters%add_table_line(rec, log)
+    end do
+  end subroutine read_table
+
+  subroutine include(self, line, log)
+    class(deck), intent(inout) :: self
+    type(logical_line), intent(in) :: line
+    type(message_log), intent(inout) :: log
+
+    self%control%line = line
+    self%control%command = 'INCLude'
+    self%control%is_damaged = self%line_damaged
+    call self%control%split(self%symbols, log)
+    if (self%control%is_damaged) return
+    call self%control%check_count(2, 2, log, 'INCLude file')
+    if (self%control%count == 2) call self%text%include(self%control%word(2), line%at, log)
+  end subroutine include
+
+  subroutine begin_if(self, line, log)
+    class(deck), intent(inout) :: self
+    type(logical_line), intent(inout) :: line
+    type(message_log), intent(inout) :: log
+    type(control_block) :: block
+
+    block%kind = if_block
+    block%outer_active = self%active
+    block%active = self%active
+    if (self%active) block%active = self%condition(line, 'IF', log)
+    block%taken = block%active
+    call self%push_block(block, line%at)
+  end subroutine begin_if
+
+  subroutine next_branch(self, line, word, log)
+    !! ELSEif, ELSE and ENDIf.
+    class(deck), intent(inout) :: self
+    type(logical_line), intent(inout) :: line
+    character(4), intent(in) :: word
+    type(message_log), intent(inout) :: log
+    character(:), allocatable :: command
+    logical :: holds
+
+    command = 'ENDIf'
+    if (word == 'else') command = 'ELSE'
+    if (word == 'elif') command = 'ELSEif'
+    if (.not. self%find_block(if_block, command, line%at, log)) return
+    if (word == 'endi') then
+      call self%pop_block()
+      return
+    end if
+    holds = .true.
+    associate (block => self%blocks(self%open_blocks))
+      if (block%has_else) call log%add_error(line%at, command, &
+        'the IF at ' // in_place(block%at) // ' has its ELSE already', '')
+      if (word == 'else' .and. line%n > len('ELSE')) call log%add_error(line%at, command, &
+        quoted(trim(adjustl(line%text(5:line%n)))) // ' is unexpected', &
+          'Another condition needs ELSEif.')
+      block%has_else = block%has_else .or. word == 'else'
+      if (block%taken) holds = .false.
+      if (holds .and. block%outer_active .and. word == 'elif') &
+        holds = self%condition(line, command, log)
+      block%active = holds .and. block%outer_active
+      block%taken = block%taken .or. holds
+      self%active = block%active
+    end associate
+  end subroutine next_branch
+
+  logical function condition(self, line, command, log)
+    class(deck), intent(inout) :: self
+    type(logical_line), intent(inout) :: line
+    character(*), intent(in) :: command
+    type(message_log), intent(inout) :: log
+    type(expression_problem) :: problem
+    type(value) :: v
+    integer :: first
+
+    condition = .false.
+    self%line_damaged = .false.
+    call self%substitute(line, log)
+    if (self%line_damaged) return
+    first = len('IF') + 1
+    if (command == 'ELSEif') first = index(lower_case(line%text(1:line%n)), 'if') + len('IF')
+    call evaluate(line%text(first:line%n), self%symbols, v, problem)
+    if (problem%found) then
+      if (len(problem%name) > 0) problem%remedy = 'A word is written in quotes, "' // &
+        problem%name // '". ' // &
+        problem%remedy
+      call log%add_error(line%at, command, problem%fact, problem%remedy)
+    else if (v%kind == word_value) then
+      call log%add_error(line%at, command, 'expected a condition, found the word ' // &
+        quoted(v%word), '')
+    else if (v%kind == number_value) then
+      condition = .not. equal(v%x, 0.0_wp)
+    end if
+  end function condition
+
+  subroutine begin_loop(self, line, log)
+    class(deck), intent(inout) :: self
+    type(logical_line), intent(inout) :: line
+    type(message_log), intent(inout) :: log
+    type(control_block) :: block
+    type(value) :: v
+
+    block%kind = loop_block
+    block%outer_active = self%active
+    block%active = self%active
+    block%counter = ''
+    if (.not. self%active) then
+      if (self%loop_is_skipped()) call self%push_block(block, line%at)
+      return
+    end if
+    self%line_damaged = .false.
+    call self%substitute(line, log)
+    self%control%line = line
+    self%control%command = 'LOOP'
+    self%control%is_damaged = self%line_damaged
+    call self%control%split(self%symbols, log)
+    call self%control%check_count(2, 3, log, 'LOOP number [counter]')
+    call self%control%item_value(2, v, log, 'a whole number', 'the passes')
+    if (v%kind == word_value) then
+      call self%control%add_error(log, &
+        'expected a whole number for the passes, found the word ' // quoted(v%word), '')
+    else if (v%kind == number_value) then
+      if (v%x >= 0 .and. v%x < huge(1) .and. equal(aint(v%x), v%x)) then
+        block%passes = nint(v%x)
+      else
+        call self%control%add_error(log, 'expected a whole number for the passes, found ' // &
+          value_text(v), '')
+      end if
+    end if
+    block%active = block%passes > 0
+    block%counter = self%control%word(3)
+    if (len(block%counter) > 0 .and. block%active) &
+      call self%parameters%set_counter(block%counter, 1, line%at, log)
+    block%begin = self%text%mark()
+    call self%push_block(block, line%at)
+  end subroutine begin_loop
+
+  subroutine next_pass(self, line, log)
+    class(deck), intent(inout) :: self
+    type(logical_line), intent(in) :: line
+    type(message_log), intent(inout) :: log
+
+    if (.not. self%active) then
+      if (.not. self%loop_is_skipped()) return
+    end if
+    if (.not. self%find_block(loop_block, 'NEXT', line%at, log)) return
+    associate (block => self%blocks(self%open_blocks))
+      if (block%active .and. block%pass < block%passes) then
+        block%pass = block%pass + 1
+        if (len(block%counter) > 0) &
+          call self%parameters%set_counter(block%counter, block%pass, block%at, log)
+        call self%text%return_to(block%begin)
+        return
+      end if
+    end associate
+    call self%pop_block()
+  end subroutine next_pass
+
+  logical function loop_is_skipped(self)
+    !! Are lines left out because of a LOOP without passes? (Where an IF leaves them out, its
+    !! solution part may hold LOOP and NEXT of another kind.)
+    class(deck), intent(in) :: self
+    integer :: i
+
+    loop_is_skipped = .false.
+    do i = 1, self%open_blocks
+      if (self%blocks(i)%active) cycle
+      loop_is_skipped = self%blocks(i)%kind == loop_block
+      return
+    end do
+  end function loop_is_skipped
+
+  subroutine push_block(self, block, at)
+    class(deck), intent(inout) :: self
+    type(control_block), intent(in) :: block
+    type(deck_place), intent(in) :: at
+    type(control_block), allocatable :: longer(:)
+
+    if (self%open_blocks == size(self%blocks)) then
+      allocate (longer(2*self%open_blocks))
+      longer(1:self%open_blocks) = self%blocks
+      call move_alloc(longer, self%blocks)
+    end if
+    self%open_blocks = self%open_blocks + 1
+    self%blocks(self%open_blocks) = block
+    self%blocks(self%open_blocks)%at = at
+    self%blocks(self%open_blocks)%nesting = self%text%nesting()
+    self%active = block%active
+  end subroutine push_block
+
+  subroutine pop_block(self)
+    class(deck), intent(inout) :: self
+
+    self%active = self%blocks(self%open_blocks)%outer_active
+    self%open_blocks = self%open_blocks - 1
+  end subroutine pop_block
+
+  logical function find_block(self, kind, command, at, log)
+    !! Is the innermost block of this file of this kind? Others inside it are reported and closed.
+    class(deck), intent(inout) :: self
+    integer, intent(in) :: kind
+    character(*), intent(in) :: command
+    type(deck_place), intent(in) :: at
+    type(message_log), intent(inout) :: log
+    integer :: i
+
+    find_block = .false.
+    do i = self%open_blocks, 1, -1
+      if (self%blocks(i)%nesting /= self%text%nesting()) exit
+      find_block = self%blocks(i)%kind == kind
+      if (find_block) exit
+    end do
+    if (.not. find_block) then
+      call log%add_error(at, command, 'there is no ' // trim(opener(kind)) // &
+        ' before it in this file', '')
+      return
+    end if
+    do while (self%open_blocks > i)
+      call report_open(self%blocks(self%open_blocks), log)
+      call self%pop_block()
+    end do
+  end function find_block
+
+  subroutine close_blocks(self, log)
+    !! At the end of a file: what begins in it must have ended.
+    class(deck), intent(inout) :: self
+    type(message_log), intent(inout) :: log
+
+    do while (self%open_blocks > 0)
+      if (self%blocks(self%open_blocks)%nesting <= self%text%nesting()) return
+      call report_open(self%blocks(self%open_blocks), log)
+      call self%pop_block()
+    end do
+  end subroutine close_blocks
+
+  subroutine report_open(block, log)
+    type(control_block), intent(in) :: block
+    type(message_log), intent(inout) :: log
+
+    call log%add_error(block%at, trim(opener(block%kind)), 'this ' // trim(opener(block%kind)) // &
+      ' is not closed', merge('Its ENDIf is missing.', 'Its NEXT is missing. ', &
+        block%kind == if_block))
+  end subroutine report_open
+
+  pure function opener(kind)
+    integer, intent(in) :: kind
+    character(4) :: opener
+
+    opener = merge('IF  ', 'LOOP', kind == if_block)
+  end function opener
+end module deck_reader

@@ -1,0 +1,191 @@
+module interface_commands
+  !! CONTact: a pair of surfaces; what happens between them is law data of an interface element.
+  !!
+  !!     CONTact name SLAVe=surface MASTer=surface PENAlty=e [GP=n] [SIDE=-1] [REACh=r]
+  !!       lines of law data, if any, to a blank line or the next command
+  use kinds, only: wp
+  use messages, only: message_log, deck_place, quoted, name_hint, in_place
+  use deck_record, only: record
+  use deck_reader, only: deck_type => deck
+  use model_data, only: model_type, interface_type, surface_load_type, history_request, set_elements, set_surface
+  use model_sets, only: find_set, find_set_of_kind, set_names, as_surface
+  use mesh_draft, only: draft_type, interface_request
+  use user_element, only: element_type, property_record
+  use element_library, only: new_element
+  use material_commands, only: read_properties, define_element
+  implicit none (type, external)
+  private
+  public :: read_contact, resolve_interfaces, resolve_loads, resolve_histories
+
+contains
+
+  subroutine read_contact(deck, command, model, draft, log)
+    type(deck_type), intent(inout) :: deck
+    type(record), intent(in) :: command
+    type(model_type), intent(inout) :: model
+    type(draft_type), intent(inout) :: draft
+    type(message_log), intent(inout) :: log
+    type(interface_type), allocatable :: larger(:)
+    type(property_record), allocatable :: properties(:)
+    type(deck_place), allocatable :: places(:)
+    class(element_type), allocatable :: element
+    character(:), allocatable :: known
+    real(wp) :: penalty
+    integer :: i, n
+
+    n = size(model%interfaces)
+    allocate (larger(n + 1))
+    do i = 1, n
+      call move_interface(model%interfaces(i), larger(i))
+    end do
+    associate (new => larger(n + 1))
+      call command%text(2, new%name, log, 'name of the interface')
+      new%place = in_place(command%at)
+      penalty = -1
+      call command%number_option('penalty', penalty, log)
+      call command%integer_option('gp', new%gp, log)
+      call command%integer_option('side', new%side, log)
+      call command%number_option('reach', new%reach, log)
+      call command%check_options([character(7) :: 'slave', 'master', 'penalty', 'gp', 'side', 'reach'], log)
+      if (.not. command%has('penalty')) then
+        call command%add_error(log, 'the penalty is missing', 'Write PENAlty=e, a stiffness per area: pressure = e*depth')
+      else if (.not. penalty > 0) then
+        call command%add_error(log, 'the penalty must be positive', '', command%find('penalty'))
+      end if
+      if (new%gp < 1) call command%add_error(log, 'at least one Gauss point is needed', 'Write GP=2', command%find('gp'))
+      if (abs(new%side) /= 1) call command%add_error(log, 'the side of a master is 1 or -1', '', command%find('side'))
+      if (new%reach < 0) call command%add_error(log, 'the reach of the search is a length', '', command%find('reach'))
+      properties = [property_record(place=new%place, words=['pena'], values=[penalty])]
+    end associate
+    call move_alloc(larger, model%interfaces)
+
+    places = [command%at]
+    call read_properties(deck, properties, places, .true., log)
+    call new_element('gpts', element, known)
+    if (penalty > 0) call define_element(element, model%ndm, 'CONTact', command%at, properties, places, log)
+    call move_alloc(element, model%interfaces(n + 1)%element)
+    call note_surfaces(command, draft, log)
+  end subroutine read_contact
+
+  subroutine note_surfaces(command, draft, log)
+    type(record), intent(in) :: command
+    type(draft_type), intent(inout) :: draft
+    type(message_log), intent(inout) :: log
+    type(interface_request) :: new
+
+    new%at = command%at
+    new%slave = ''
+    new%master = ''
+    call command%text_option('slave', new%slave, log)
+    call command%text_option('master', new%master, log)
+    if (.not. command%has('slave')) call command%add_error(log, 'the slave surface is missing', 'Write SLAVe=surface')
+    if (.not. command%has('master')) call command%add_error(log, 'the master surface is missing', &
+      'Write MASTer=surface')
+    draft%interfaces = [draft%interfaces, new]
+  end subroutine note_surfaces
+
+  subroutine move_interface(from, to)
+    type(interface_type), intent(inout) :: from
+    type(interface_type), intent(inout) :: to
+
+    call move_alloc(from%name, to%name)
+    call move_alloc(from%place, to%place)
+    to%slave = from%slave
+    to%master = from%master
+    to%gp = from%gp
+    to%side = from%side
+    to%reach = from%reach
+    call move_alloc(from%element, to%element)
+  end subroutine move_interface
+
+  subroutine resolve_interfaces(model, draft, log)
+    type(model_type), intent(inout) :: model
+    type(draft_type), intent(in) :: draft
+    type(message_log), intent(inout) :: log
+    integer :: i
+
+    do i = 1, size(draft%interfaces)
+      associate (request => draft%interfaces(i))
+        model%interfaces(i)%slave = surface_of(model, draft, request%at, 'CONTact', 'slave surface', request%slave, log)
+        model%interfaces(i)%master = surface_of(model, draft, request%at, 'CONTact', 'master surface', request%master, log)
+        if (model%interfaces(i)%slave == model%interfaces(i)%master .and. model%interfaces(i)%slave > 0) call &
+          log%add_error(request%at, 'CONTact', 'slave and master are the same surface', &
+          'Contact of a surface with itself needs two parts of it')
+      end associate
+    end do
+  end subroutine resolve_interfaces
+
+  integer function surface_of(model, draft, at, command, what, name, log) result(index)
+    !! The surface of this name, 0 after an error.
+    type(model_type), intent(inout) :: model
+    type(draft_type), intent(in) :: draft
+    type(deck_place), intent(in) :: at
+    character(*), intent(in) :: command, what, name
+    type(message_log), intent(inout) :: log
+
+    index = 0
+    if (len(name) == 0) return
+    index = find_set_of_kind(model, name, set_surface)
+    if (index == 0) index = find_set(model, name)
+    if (index == 0) then
+      call log%add_error(at, command, 'there is no ' // what // ' ' // quoted(name), &
+        name_hint(name, set_names(model, set_surface), 'surfaces'))
+      return
+    end if
+    call as_surface(model, index)
+    if (index == 0) then
+      call log%add_error(at, command, what // ' ' // quoted(name) // ' is not a surface', &
+        name_hint(name, set_names(model, set_surface), 'surfaces'))
+    else if (size(model%sets(index)%items) == 0 .and. .not. draft%has_lost_sets) then
+      call log%add_error(at, command, what // ' ' // quoted(name) // ' has no elements', &
+        name_hint('', set_names(model, set_surface), 'surfaces'))
+      index = 0
+    end if
+  end function surface_of
+
+  subroutine resolve_loads(model, draft, log)
+    type(model_type), intent(inout) :: model
+    type(draft_type), intent(in) :: draft
+    type(message_log), intent(inout) :: log
+    type(surface_load_type) :: load
+    integer :: i
+
+    do i = 1, size(draft%loads)
+      associate (request => draft%loads(i))
+        load = request%load
+        load%place = in_place(request%at)
+        if (load%kind == 'body') then
+          load%set = find_set_of_kind(model, request%set, set_elements)
+          if (load%set == 0) call log%add_error(request%at, 'SLOAd', 'there is no element set ' // &
+            quoted(request%set), name_hint(request%set, set_names(model, set_elements), 'element sets'))
+        else
+          load%set = surface_of(model, draft, request%at, 'SLOAd', 'surface', request%set, log)
+        end if
+        if (load%prop > 0 .and. .not. any(model%props(:)%number == load%prop)) call log%add_error(request%at, &
+          'SLOAd', 'the time function of PROP is not defined', 'Define it by PROPortional')
+        model%loads = [model%loads, load]
+      end associate
+    end do
+  end subroutine resolve_loads
+
+  subroutine resolve_histories(model, draft, log)
+    type(model_type), intent(inout) :: model
+    type(draft_type), intent(in) :: draft
+    type(message_log), intent(inout) :: log
+    type(history_request) :: new
+    integer :: i
+
+    do i = 1, size(draft%histories)
+      associate (request => draft%histories(i))
+        new = request%request
+        new%place = in_place(request%at)
+        if (len(request%set) > 0) then
+          new%set = find_set(model, request%set)
+          if (new%set == 0) call log%add_error(request%at, 'HISTory', 'there is no set ' // quoted(request%set), &
+            name_hint(request%set, set_names(model, 0), 'sets'))
+        end if
+        model%histories = [model%histories, new]
+      end associate
+    end do
+  end subroutine resolve_histories
+end module interface_commands

@@ -1,0 +1,132 @@
+module model_data
+  !! What a deck describes: nodes, elements with their extraction, sets, materials, conditions, loads, interfaces,
+  !! requested histories and outputs. Filled by the mesh commands, read by everything else; nothing of the solution
+  !! in progress is kept here.
+  use kinds, only: wp
+  use extraction_set, only: extraction_set_type
+  use user_element, only: element_type
+  implicit none (type, external)
+  private
+  public :: model_type, named_set, material_type, time_function, surface_load_type, interface_type, &
+    history_request, output_request, linear_constraint, extraction_set_type
+  public :: set_nodes, set_elements, set_surface
+
+  integer, parameter :: set_nodes = 1, set_elements = 2, set_surface = 3
+
+  type :: named_set
+    character(:), allocatable :: name    !! as the deck writes it; compared without regard to case
+    character(:), allocatable :: place   !! file:line
+    integer :: kind = 0                  !! set_nodes, set_elements, set_surface
+    integer, allocatable :: items(:)     !! nodes; elements; the elements of a surface
+    integer, allocatable :: sides(:)     !! surface: side 1..2*dp of each element (0: the element itself, a shell)
+  end type named_set
+
+  type :: material_type
+    integer :: number = 0
+    character(:), allocatable :: name    !! first word after the number, may be empty
+    character(:), allocatable :: place
+    class(element_type), allocatable :: element
+  end type material_type
+
+  type :: time_function
+    !! Piecewise linear in time, constant beyond its ends (PROP).
+    integer :: number = 0
+    real(wp), allocatable :: t(:), v(:)
+  contains
+    procedure :: at => time_function_at
+  end type time_function
+
+  type :: surface_load_type
+    !! A load on a surface, or a body force on an element set.
+    integer :: set = 0                   !! index into sets
+    character(8) :: kind = ''            !! 'traction', 'pressure' (dead), 'follower', 'body'
+    real(wp) :: value(3) = 0             !! vector; pressure in value(1), > 0 pushes against the surface
+    integer :: prop = 0                  !! time function number (0: factor 1... the proportional load)
+    integer :: gp = 0                    !! Gauss points per direction (0: degree + 1)
+    character(:), allocatable :: place
+  end type surface_load_type
+
+  type :: interface_type
+    !! A pair of surfaces coupled by Gauss-point-to-surface elements.
+    character(:), allocatable :: name, place
+    integer :: slave = 0, master = 0     !! indices into sets (surfaces)
+    integer :: gp = 2                    !! Gauss points per direction on each slave facet
+    integer :: side = 1                  !! sign of the master's normal (shells)
+    real(wp) :: reach = 0                !! search distance [length], 0: chosen from facet sizes
+    class(element_type), allocatable :: element
+  end type interface_type
+
+  type :: history_request
+    character(:), allocatable :: label, place
+    integer :: set = 0                   !! node set or surface (index into sets), 0: the whole model
+    logical :: reaction = .false.        !! <label>_rx,<label>_ry,<label>_rz: sums over the set
+    logical :: displacement = .false.    !! <label>_ux,...: of the one node, or the mean over the set
+    logical :: work = .false., elastic = .false., penalty = .false., dissipated = .false., penetration = .false.
+    logical :: balance = .false.         !! residual sums
+  end type history_request
+
+  type :: output_request
+    !! When fields and restart states are written (OUTPut, RESTart). The last step is always written.
+    logical :: fields = .true.           !! .false.: no field output at all (OUTPut NONE)
+    integer :: every = 0                 !! every so many steps; 0: only what follows and the last step
+    integer, allocatable :: steps(:)     !! these steps
+    real(wp), allocatable :: times(:)    !! these times
+    integer :: restart_every = 20        !! steps between restart states; 0: none
+  end type output_request
+
+  type :: linear_constraint
+    !! u(dof) = constant + sum coef * u(master dofs) (LINK).
+    integer :: node = 0, comp = 0
+    integer, allocatable :: nodes(:), comps(:)
+    real(wp), allocatable :: coefs(:)
+    real(wp) :: constant = 0
+    character(:), allocatable :: place
+  end type linear_constraint
+
+  type :: model_type
+    character(:), allocatable :: title
+    integer :: ndm = 0                               !! space dimension
+    integer :: ndf = 0                               !! dofs per node (largest)
+    integer :: nn = 0                                !! nodes (control points)
+    real(wp), allocatable :: x(:, :)                 !! reference control points (ndm,nn) [length]
+    real(wp), allocatable :: w(:)                    !! control weights (nn)
+    type(extraction_set_type) :: mesh                !! all bulk elements
+    integer, allocatable :: material_of(:)           !! (ne) index into materials
+    integer, allocatable :: body_of(:)               !! (ne) body number for results
+    type(named_set), allocatable :: sets(:)
+    type(material_type), allocatable :: materials(:)
+    type(time_function), allocatable :: props(:)
+    logical, allocatable :: fixed(:, :)              !! (ndf,nn) the value is prescribed
+    real(wp), allocatable :: disp(:, :)              !! (ndf,nn) its amplitude
+    integer, allocatable :: disp_prop(:, :)          !! (ndf,nn) its time function (0: all props summed, as in FEAP)
+    real(wp), allocatable :: force(:, :)             !! (ndf,nn) dead nodal forces
+    integer, allocatable :: force_prop(:, :)         !! (ndf,nn)
+    type(linear_constraint), allocatable :: links(:)
+    type(surface_load_type), allocatable :: loads(:)
+    type(interface_type), allocatable :: interfaces(:)
+    type(history_request), allocatable :: histories(:)
+    type(output_request) :: outputs
+  end type model_type
+
+contains
+
+  pure function time_function_at(self, time) result(value)
+    class(time_function), intent(in) :: self
+    real(wp), intent(in) :: time
+    real(wp) :: value
+    integer :: i, n
+
+    n = size(self%t)
+    if (time <= self%t(1)) then
+      value = self%v(1)
+      return
+    end if
+    do i = 2, n
+      if (time <= self%t(i)) then
+        value = self%v(i - 1) + (self%v(i) - self%v(i - 1))*((time - self%t(i - 1))/(self%t(i) - self%t(i - 1)))
+        return
+      end if
+    end do
+    value = self%v(n)
+  end function time_function_at
+end module model_data

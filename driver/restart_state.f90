@@ -1,0 +1,135 @@
+module restart_state
+  !! restart.h5: all that decides the next step. Written to a draft and renamed into place, so that a run killed at any
+  !! instant leaves a whole state. The matrix pattern, its ordering and the search tree are not stored but renewed, in
+  !! the run that goes on and in the one that restarts alike: both continue with the same bits.
+  use kinds, only: wp, i8
+  use hdf5_store, only: hdf5_store_type
+  use equilibrium, only: equilibrium_type
+  use interface_points, only: forget_search
+  use step_control, only: step_control_type
+  implicit none (type, external)
+  private
+  public :: write_restart, read_restart
+
+contains
+
+  subroutine write_restart(path, identity, step, eq, control, message)
+    character(*), intent(in) :: path
+    character(*), intent(in) :: identity                   !! deck text and parameters: a restart needs the same
+    integer, intent(in) :: step
+    type(equilibrium_type), intent(inout) :: eq            !! its pattern and search are renewed afterwards
+    type(step_control_type), intent(in) :: control
+    character(:), allocatable, intent(out) :: message      !! what failed, unallocated when all is well
+    type(hdf5_store_type) :: store
+    character(:), allocatable :: group
+    integer :: i
+
+    call store%create_draft(path)
+    call store%write_text('/identity', identity)
+    call store%write('/steps', [step, control%level, merge(1, 0, control%has_rate), eq%active])
+    call store%write('/times', [eq%time_n, control%time_before])
+    call store%write('/energies', [eq%energies_n%elastic, eq%energies_n%dissipated, eq%energies_n%penalty, &
+                                   eq%energies_n%work, eq%energies_n%penetration])
+    call store%write('/u', eq%un)
+    call store%write('/f', eq%f_n)
+    call store%write('/fext', eq%fext_n)
+    call store%write('/rate', control%rate)
+    call store%write('/history', eq%bulk%hist_n)
+    do i = 1, size(eq%interfaces)
+      group = '/interface'//achar(iachar('0') + i)
+      call store%make_group(group)
+      call store%write(group//'/facet', eq%interfaces(i)%facet_n)
+      call store%write(group//'/xi', eq%interfaces(i)%xi_n)
+      call store%write(group//'/history', eq%interfaces(i)%hist_n)
+      call forget_search(eq%interfaces(i))
+    end do
+    call store%publish()
+    eq%pattern_stands = .false.
+    if (store%failed) message = store%message
+  end subroutine write_restart
+
+  subroutine read_restart(path, identity, step, eq, control, message)
+    !! Into a started equilibrium and control.
+    character(*), intent(in) :: path
+    character(*), intent(in) :: identity
+    integer, intent(out) :: step
+    type(equilibrium_type), intent(inout) :: eq
+    type(step_control_type), intent(inout) :: control
+    character(:), allocatable, intent(out) :: message
+    type(hdf5_store_type) :: store
+    character(:), allocatable :: group, stored
+    integer, allocatable :: numbers(:), facet(:)
+    real(wp), allocatable :: times(:), energies(:), u(:, :), f(:, :), fext(:, :), rate(:, :), history(:), xi(:, :), &
+      hist(:, :)
+    integer :: i
+
+    step = 0
+    call store%open_to_read(path)
+    call store%read_text('/identity', stored)
+    if (store%failed) then
+      message = store%message//'. There is no state to continue from: run without --restart'
+      return
+    end if
+    if (stored /= identity) then
+      call store%close()
+      message = 'the deck or its parameters are not those of '//path// &
+        '. Restart with the same ones, or run without --restart'
+      return
+    end if
+    call store%read('/steps', numbers)
+    call store%read('/times', times)
+    call store%read('/energies', energies)
+    call store%read('/u', u)
+    call store%read('/f', f)
+    call store%read('/fext', fext)
+    call store%read('/rate', rate)
+    call store%read('/history', history)
+    if (.not. store%failed) then
+      if (any(shape(u) /= shape(eq%un)) .or. size(history) /= size(eq%bulk%hist)) then
+        message = path//' belongs to another mesh. Run without --restart'
+        return
+      end if
+      step = numbers(1)
+      control%level = numbers(2)
+      control%has_rate = numbers(3) == 1
+      eq%active = numbers(4)
+      eq%time_n = times(1)
+      eq%time = times(1)
+      control%time_before = times(2)
+      control%rate = rate
+      eq%energies_n%elastic = energies(1)
+      eq%energies_n%dissipated = energies(2)
+      eq%energies_n%penalty = energies(3)
+      eq%energies_n%work = energies(4)
+      eq%energies_n%penetration = energies(5)
+      eq%energies = eq%energies_n
+      eq%un = u
+      eq%u = u
+      eq%f_n = f
+      eq%f = f
+      eq%fext_n = fext
+      eq%fext = fext
+      eq%bulk%hist_n = history
+      eq%bulk%hist = history
+    end if
+    do i = 1, size(eq%interfaces)
+      group = '/interface'//achar(iachar('0') + i)
+      call store%read(group//'/facet', facet)
+      call store%read(group//'/xi', xi)
+      call store%read(group//'/history', hist)
+      if (store%failed) exit
+      associate (points => eq%interfaces(i))
+        points%facet_n = facet
+        points%facet = facet
+        points%xi_n = xi
+        points%xi = xi
+        points%hist_n = reshape(hist, shape(points%hist))
+        points%hist = points%hist_n
+        call forget_search(points)
+      end associate
+    end do
+    if (store%failed) message = store%message
+    call store%close()
+    eq%pattern_stands = .false.
+  end subroutine read_restart
+end module restart_state

@@ -1,0 +1,59 @@
+module status_codes
+  !! Expected failures of shape routines and kernels, as named values. Zero is success; a kernel never stops
+  !! and never prints, its caller decides (cut the step back, refuse the deck, return PNEWDT < 1, ...).
+  implicit none (type, external)
+  private
+  public :: ok, inverted_element, singular_map, outside_facet, singular_projection, no_convergence, bad_weight, &
+    bad_knots, not_symmetric, bad_law_data, law_failed, &
+    bad_extraction, node_out_of_range, not_finite
+  public :: stale_pattern, singular_matrix, not_positive_definite, out_of_memory
+  public :: status_text
+
+  integer, parameter :: ok = 0
+  integer, parameter :: inverted_element = 1     !! det J or det F is not positive
+  integer, parameter :: singular_map = 2         !! tangents of a facet are parallel or vanish
+  integer, parameter :: outside_facet = 3        !! the projection lies beyond the facet's bounds
+  integer, parameter :: singular_projection = 4  !! the point is at a centre of curvature of the facet
+  integer, parameter :: no_convergence = 5       !! an inner iteration did not converge
+  integer, parameter :: bad_weight = 6           !! the weight function is not positive
+  integer, parameter :: bad_knots = 7            !! a knot vector decreases or repeats a knot too often
+  integer, parameter :: not_symmetric = 8        !! a tangent that was announced as symmetric is not
+  integer, parameter :: bad_law_data = 9         !! law parameters outside their admissible range
+  integer, parameter :: law_failed = 10          !! the constitutive iteration (plane stress) failed
+  integer, parameter :: bad_extraction = 11     !! operator, degrees and connectivity of an element do not fit
+  integer, parameter :: node_out_of_range = 12  !! a connectivity names a node that does not exist
+  integer, parameter :: not_finite = 13         !! a coefficient is infinite or not a number
+  integer, parameter :: stale_pattern = 14  !! the sparse pattern lacks an entry and must be built anew
+  integer, parameter :: singular_matrix = 15  !! the matrix is singular to working precision
+  integer, parameter :: not_positive_definite = 16  !! a pivot of the Cholesky factorisation is not positive
+  integer, parameter :: out_of_memory = 17  !! the memory does not suffice
+
+contains
+
+  pure function status_text(status) result(text)
+    integer, intent(in) :: status        !! one of the codes above
+    character(:), allocatable :: text    !! what happened, without place
+
+    select case (status)
+    case (ok);                  text = 'ok'
+    case (inverted_element);    text = 'the element is inverted (its Jacobian determinant is not positive)'
+    case (singular_map);        text = 'the tangents of the surface vanish or are parallel'
+    case (outside_facet);       text = 'the projection lies beyond the bounds of the facet'
+    case (singular_projection); text = 'the point lies at a centre of curvature of the facet'
+    case (no_convergence);      text = 'the local iteration did not converge'
+    case (bad_weight);          text = 'the weight function is not positive'
+    case (bad_knots);           text = 'the knot vector decreases or repeats a knot too often'
+    case (not_symmetric);       text = 'the tangent is not symmetric'
+    case (bad_law_data);        text = 'the law parameters are outside their admissible range'
+    case (law_failed);          text = 'the constitutive iteration failed'
+    case (bad_extraction);      text = 'the extraction operator does not fit the degrees and the nodes of the element'
+    case (node_out_of_range);   text = 'the connectivity names a node that does not exist'
+    case (not_finite);          text = 'a coefficient is infinite or not a number'
+    case (stale_pattern); text = 'the sparse pattern lacks an entry and must be built anew'
+    case (singular_matrix); text = 'the matrix is singular to working precision'
+    case (not_positive_definite); text = 'the matrix is not positive definite'
+    case (out_of_memory); text = 'the memory does not suffice'
+    case default;               text = 'unknown status'
+    end select
+  end function status_text
+end module status_codes
