@@ -4,9 +4,9 @@ module deck_reader
   !!
   !!     type(deck) :: input
   !!     type(record) :: rec
-  !!     call input%open('ironing.inp', settings, log)      ! settings: name=value of the command line
+  !!     call input%open('ironing.inp', settings, log)    ! name=value of the command line
   !!     do
-  !!       call input%next_command(rec, log)                ! skips blank lines, names the command for messages
+  !!       call input%next_command(rec, log)              ! skips blank lines; messages name it
   !!       if (rec%end_of_deck) exit
   !!       select case (rec%key(1))                         ! four letters, lower case
   !!       case ('coor')
@@ -20,7 +20,7 @@ module deck_reader
   !!         call input%refuse_command(rec, [character(11) :: 'COORdinates', ...], log)
   !!       end select
   !!     end do
-  !!     call input%finish(log)                             ! settings that the deck does not have, IF without ENDIf
+  !!     call input%finish(log)                           ! unknown settings, IF without ENDIf
   !!     if (log%error_count() > 0) ...
   !!
   !! (access to the items of a record: module deck_record). `push_back` gives a record back, to be
@@ -33,12 +33,12 @@ module deck_reader
   !!
   !!     FEAP * * title          the first line that is neither blank nor a comment
   !!     PARAmeter, TABLe        see module parameters; to a blank line
-  !!     INCLude file            relative to the including file, in quotes if it has blanks, commas or =
-  !!     IF expr / ELSEif expr / ELSE / ENDIf     expr is the whole rest of the line; basis == "L" .and. p > 2
-  !!     LOOP n [i] / NEXT       repeats the lines between them, i counts from 1; before BATCh only: between BATCh and END
-  !!                             LOOP and NEXT are solution commands and come as records
-  !!     {expr}                  anywhere in a line: replaced by the value, before anything else (whole numbers without
-  !!                             point); not in comments, the title, and lines that an IF leaves out
+  !!     INCLude file            relative to the including file; quotes hold blanks, commas, =
+  !!     IF expr / ELSEif expr / ELSE / ENDIf     expr is the rest of the line: basis == "L"
+  !!     LOOP n [i] / NEXT       repeats the lines between them, i counts from 1; before BATCh only,
+  !!                             behind it LOOP and NEXT are solution commands and come as records
+  !!     {expr}                  anywhere in a line: replaced by the value before all else (whole
+  !!                             numbers without point); not in comments and the title
   !!     INTEractive             refused
   !!
   !! The first four letters count, in any case (all letters of IF, ELSE, END). A line that begins
@@ -47,14 +47,12 @@ module deck_reader
   !! condition with an error counts as false.
   use kinds, only: wp
   use messages, only: string, deck_place, message_log, name_hint, closest_name, lower_case, &
-    quoted, whole_text, &
-    in_place, edit_distance
+    quoted, in_place, edit_distance
   use number_text, only: equal
   use expressions, only: symbol_source, value, expression_problem, evaluate, value_text, &
-    unknown_value, &
-    number_value, word_value
+    unknown_value, number_value, word_value
   use deck_record, only: record, logical_line, blank_line, append_text, command_form
-  use deck_source, only: source, source_mark, line_read, file_ended, deck_ended
+  use deck_source, only: source, source_mark, line_read, deck_ended
   use parameters, only: deck_parameters, setting, command_line_place
   implicit none (type, external)
   private
@@ -126,7 +124,7 @@ contains
   subroutine open_deck(self, path, settings, log)
     class(deck), intent(inout) :: self
     character(*), intent(in) :: path             !! the deck
-    type(setting), intent(in) :: settings(:)     !! name=value of the command line; [setting ::] if none
+    type(setting), intent(in) :: settings(:)     !! name=value of the command line
     type(message_log), intent(inout) :: log
     type(logical_line) :: line
     type(deck_place) :: at
@@ -295,7 +293,7 @@ contains
 
   function full_text(self) result(text)
     class(deck), intent(in) :: self
-    character(:), allocatable :: text            !! the deck, then each included file under a line with its name
+    character(:), allocatable :: text            !! the deck, then the included files
     integer :: i
 
     text = ''
@@ -572,7 +570,7 @@ contains
     if (self%line_damaged) return
     first = len('IF') + 1
     if (command == 'ELSEif') first = index(lower_case(line%text(1:line%n)), 'if') + len('IF')
-    call evaluate(line%text(first:line%n), self%symbols, v, problem)
+    call evaluate(trim(adjustl(line%text(first:line%n))), self%symbols, v, problem)
     if (problem%found) then
       if (len(problem%name) > 0) problem%remedy = 'A word is written in quotes, "' // &
         problem%name // '". ' // &

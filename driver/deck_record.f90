@@ -9,24 +9,24 @@ module deck_record
   !!
   !!     type(record) :: rec
   !!     rec%count               number of items
-  !!     rec%is_blank            the line that ends a data set (also at the end of the deck: rec%ends_set)
+  !!     rec%is_blank            the line that ends a data set (rec%ends_set: or end of deck)
   !!     rec%end_of_deck         nothing follows
   !!     rec%word(i)             the item as written, without quotes; '' if there is none
   !!     rec%key(i)              its first four letters in lower case, which decide a command
   !!     rec%command             the command that the record belongs to, for messages: CONTact
-  !!     rec%at                  file and line (%place_of(i): those of item i, if the line is continued)
+  !!     rec%at                  file and line (rec%place_of(i): of item i of a continued line)
   !!     call rec%number(i, x, log, 'thickness' [, default])     a number or an expression
   !!     call rec%integer(i, n, log, 'degree' [, default])       the same, whole
   !!     call rec%text(i, name, log, 'surface name' [, default]) a name
   !!     call rec%numbers(i, x(:), log, 'coordinates')           size(x) of them, from item i on
   !!     call rec%integers(i, n(:), log, 'node numbers')
   !!     rec%has('slave')        is there an item slave (first four letters, not in quotes)?
-  !!     rec%find('slave')       index of the item after it (slave=TOP or slave TOP), 0 if there is none
-  !!     call rec%number_option('penalty', x, log)               x stays as it is if the option is not there
+  !!     rec%find('slave')       index of the item after it (slave=TOP, slave TOP), else 0
+  !!     call rec%number_option('penalty', x, log)     x stays if the option is not there
   !!     call rec%integer_option(...), call rec%text_option(...)
-  !!     call rec%check_options([character(8) :: 'slave', 'penalty'], log)   refuses other `key=`, with a hint
-  !!     call rec%check_count(least, most, log, 'name, degree, ids')  refuses too few and too many items
-  !!     call rec%add_error(log, fact, remedy [, i])             a message at this record (at item i)
+  !!     call rec%check_options([character(8) :: 'slave', 'penalty'], log)    no other `key=`
+  !!     call rec%check_count(least, most, log, 'name, degree, ids')          number of items
+  !!     call rec%add_error(log, fact, remedy [, i])    a message at this record (item i)
   !!
   !! Missing items are errors where no default is given; an empty item is the default, or 0, or
   !! blank. After an error the value is 0 (or ''), so that reading goes on and finds the other
@@ -205,7 +205,7 @@ contains
   pure function word(self, i)
     class(record), intent(in) :: self
     integer, intent(in) :: i
-    character(:), allocatable :: word       !! the item as written, without quotes; '' if there is none
+    character(:), allocatable :: word       !! the item as written, without quotes
 
     if (i >= 1 .and. i <= self%count) then
       word = self%line%text(self%first(i):self%last(i))
@@ -235,7 +235,7 @@ contains
   pure function place_of(self, i) result(at)
     class(record), intent(in) :: self
     integer, intent(in) :: i
-    type(deck_place) :: at                  !! of item i (of the record's begin if there is no such item)
+    type(deck_place) :: at                  !! of item i (else where the record begins)
     integer :: k
 
     at = self%at

@@ -17,7 +17,7 @@ module deck_source
   public :: source, source_mark, line_read, file_ended, deck_ended
 
   integer, parameter :: line_read = 0       !! outcomes of next_line
-  integer, parameter :: file_ended = 1      !! an included file ended, the one that includes it goes on
+  integer, parameter :: file_ended = 1      !! an included file ended, its includer goes on
   integer, parameter :: deck_ended = 2
 
   integer, parameter :: deepest = 50        !! files that include each other
@@ -220,7 +220,7 @@ contains
 
   subroutine next_line(self, line, outcome, log)
     class(source), intent(inout) :: self
-    type(logical_line), intent(inout) :: line   !! blanks at both ends removed; its buffers are used again
+    type(logical_line), intent(inout) :: line   !! without blanks at its ends
     integer, intent(out) :: outcome
     type(message_log), intent(inout) :: log
     logical :: comment_only, continues

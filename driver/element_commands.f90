@@ -157,7 +157,7 @@ contains
       case default; grid(brick_8) = ix
       end select
       call model%mesh%add_element(dp, spread(p, 1, dp), grid, ce, id)
-      call draft%note_elements(id, id, mat, body, rec%at%line)
+      call draft%note_elements(id, id, mat, body, rec%at)
     end subroutine add_lagrange
   end subroutine read_elements
 
@@ -265,7 +265,7 @@ contains
       end if
       if (log%error_count() == error_count .and. op > 0) then
         call model%mesh%add_element_with_operator(size(degree), degree, nodes, op, id)
-        call draft%note_elements(id, id, own_material, body, rec%at%line)
+        call draft%note_elements(id, id, own_material, body, rec%at)
       else
         draft%lost_elements = draft%lost_elements + 1
       end if

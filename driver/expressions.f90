@@ -9,7 +9,7 @@ module expressions
   !!     sum         +  -
   !!     product     *  /
   !!     sign        -a  +a                       -2^2 = -4
-  !!     power       ^  **                        2^3^2 = 2^9, 2^-1 = 1/2                          highest
+  !!     power       ^  **                        2^3^2 = 2^9, 2^-1 = 1/2     highest
   !!
   !! Functions: sin cos tan asin acos atan atan2 sqrt exp log log10 abs min max int nint floor mod;
   !! constant pi. Angles are in radians. True is 1, false is 0, and any number but 0 counts as true.
@@ -21,7 +21,7 @@ module expressions
   !! where it arose. A value that depends on something whose own problem was reported already is
   !! unknown, without a second problem.
   use kinds, only: wp
-  use messages, only: string, name_hint, lower_case, quoted, whole_text
+  use messages, only: name_hint, lower_case, quoted, whole_text
   use number_text, only: read_number, write_number, equal
   implicit none (type, external)
   private
@@ -53,7 +53,7 @@ module expressions
     logical :: found = .false.
     character(:), allocatable :: fact       !! what is wrong and where in the expression
     character(:), allocatable :: remedy     !! may be ''
-    character(:), allocatable :: name       !! the name that is not known, if that is the problem; else ''
+    character(:), allocatable :: name       !! the name that is not known, else ''
   end type expression_problem
 
   type, abstract :: symbol_source

@@ -55,7 +55,12 @@ contains
       if (new%gp < 1) call command%add_error(log, 'at least one Gauss point is needed', 'Write GP=2', command%find('gp'))
       if (abs(new%side) /= 1) call command%add_error(log, 'the side of a master is 1 or -1', '', command%find('side'))
       if (new%reach < 0) call command%add_error(log, 'the reach of the search is a length', '', command%find('reach'))
-      properties = [property_record(place=new%place, words=['pena'], values=[penalty])]
+      ! component by component: gfortran 12 allocates `words` too short in a structure constructor
+      allocate (properties(1))
+      properties(1)%place = new%place
+      allocate (properties(1)%words(1))
+      properties(1)%words(1) = 'pena'
+      properties(1)%values = [penalty]
     end associate
     call move_alloc(larger, model%interfaces)
 

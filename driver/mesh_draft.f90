@@ -88,7 +88,7 @@ module mesh_draft
     logical, allocatable :: defined(:)          !! has coordinates (nn)
     integer, allocatable :: material(:)         !! material number of each element as in the deck
     integer, allocatable :: body(:)             !! body of each element
-    integer, allocatable :: line(:)             !! line of each element's record; 0: that of its origin
+    integer, allocatable :: line(:), order(:)   !! of each element's record (its file is that of the origin)
     integer :: lost_elements = 0                !! that were not added because of errors
     logical :: has_lost_sets = .false.          !! some sets are empty because of errors
     type(element_origin), allocatable :: origins(:)
@@ -141,20 +141,22 @@ contains
     self%defined(n) = .true.
   end subroutine set_node
 
-  subroutine note_elements(self, first, last, material, body, line)
+  subroutine note_elements(self, first, last, material, body, at)
     !! Elements were added to the mesh by the data set that is the last of self%origins.
     class(draft_type), intent(inout) :: self
     integer, intent(in) :: first, last    !! elements
     integer, intent(in) :: material       !! material number of the deck
     integer, intent(in) :: body
-    integer, intent(in) :: line           !! of their record, 0: that of the data set
+    type(deck_place), intent(in) :: at    !! of their record
 
     call make_room(self%material, last)
     call make_room(self%body, last)
     call make_room(self%line, last)
+    call make_room(self%order, last)
     self%material(first:last) = material
     self%body(first:last) = body
-    self%line(first:last) = line
+    self%line(first:last) = at%line
+    self%order(first:last) = at%order
     associate (origin => self%origins(size(self%origins)))
       if (origin%first == 0) origin%first = first
       origin%last = last
@@ -170,7 +172,8 @@ contains
     i = origin_of(self, e)
     if (i == 0) return
     at = self%origins(i)%at
-    if (self%line(e) > 0) at%line = self%line(e)
+    at%line = self%line(e)
+    at%order = self%order(e)
   end function element_place
 
   function element_name(self, e) result(command)

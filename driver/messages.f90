@@ -31,9 +31,9 @@ module messages
 
   type :: deck_place
     !! Where something stands.
-    character(:), allocatable :: file   !! as the user would open it; 'command line' for its arguments
+    character(:), allocatable :: file   !! as the user would open it, or 'command line'
     integer :: line = 0                 !! from 1; 0: the file as a whole
-    integer :: order = 0                !! position in the order of reading (includes, loops); sorts messages
+    integer :: order = 0                !! position in the order of reading; sorts messages
   end type deck_place
 
   type :: message
@@ -303,7 +303,7 @@ contains
 
     closest_name = 0
     if (len(name) > 64) return
-    nearest = min(max(1, (len(name) + 1)/3), len(name) - 1) + 1
+    nearest = min(max(1, (len(name) + 2)/3), len(name) - 1) + 1
     do i = 1, size(names)
       if (abs(len(names(i)%s) - len(name)) >= nearest) cycle
       distance = edit_distance(lower_case(name), lower_case(names(i)%s))

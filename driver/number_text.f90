@@ -32,7 +32,7 @@ contains
     !! The longest number that the text begins with.
     character(*), intent(in) :: text    !! no blanks in front
     real(wp), intent(out) :: x          !! its value; 0 if there is none
-    integer, intent(out) :: used        !! its characters; 0: no number; < 0: too large for the machine
+    integer, intent(out) :: used        !! its characters; 0: no number; < 0: too large
     integer(i8) :: mantissa
     integer :: i, n, digits, scale, exponent, leading, kept
     logical :: negative, negative_exponent, point

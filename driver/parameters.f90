@@ -3,7 +3,7 @@ module parameters
   !!
   !!     PARAmeter
   !!       basis = "N" [L N T]          ! a word, and the words that are allowed
-  !!       p     = 3   [integer 1:5]    ! a number and its range; [1:], [:5], [1 2 4]; integer alone is possible
+  !!       p     = 3   [integer 1:5]    ! a number and its range; [1:], [:5], [1 2 4], [integer]
   !!       h     = 2*pi/p               ! follows from others; blanks are allowed on the right side
   !!
   !!     TABLe nx                       ! nx(row key, column key) in expressions
@@ -138,14 +138,14 @@ contains
     class(deck_parameters), intent(inout) :: self
     character(*), intent(in) :: line        !! name = expression [what is allowed]
     character(*), intent(in) :: comment     !! what the deck says behind it
-    logical, intent(in) :: is_damaged       !! an error of the line was reported: the value is unknown
+    logical, intent(in) :: is_damaged       !! its error was reported: the value is unknown
     type(deck_place), intent(in) :: at
     type(message_log), intent(inout) :: log
     character(*), parameter :: command = 'PARAmeter'
     type(expression_problem) :: problem
     type(value_domain) :: domain
     type(value) :: v
-    character(:), allocatable :: name
+    character(:), allocatable :: name, text
     integer :: i, equals, bracket
     logical :: accepted
 
@@ -169,10 +169,11 @@ contains
     end if
 
     bracket = bracket_of(line)
-    if (.not. is_damaged) call evaluate(line(equals+1:bracket-1), self, v, problem)
+    text = trim(adjustl(line(equals+1:bracket-1)))
+    if (.not. is_damaged) call evaluate(text, self, v, problem)
     if (problem%found) then
-      if (len(problem%name) > 0) problem%remedy = &
-        'A word is written in quotes, ' // name // ' = "' // problem%name // '". ' // problem%remedy
+      if (len(text) > 0 .and. problem%name == text) problem%remedy = &
+        'A word is written in quotes, ' // name // ' = "' // text // '". ' // problem%remedy
       call log%add_error(at, command, name // ': ' // problem%fact, problem%remedy)
     end if
     if (bracket <= len(line) .and. .not. is_damaged) call read_domain(self, line(bracket:), v, &
@@ -465,7 +466,7 @@ contains
       self%index_of(lower_case(name)) == 0) return
     self%tables(i)%has_problem = .true.
     call log%add_error(at, 'TABLe', quoted(name) // ' cannot be the name of a table', &
-      'A name is a letter, then letters, digits and underscores; functions and parameters have theirs.')
+      'A name is a letter, then letters, digits and underscores, and has no other meaning.')
   end subroutine begin_table
 
   subroutine add_table_line(self, rec, log)

@@ -406,7 +406,7 @@ contains
       end do
       call patch_extraction(new%patch, [(a, a = first_node, draft%nn)], model%mesh)
     end if
-    call draft%note_elements(first, model%mesh%ne, material, body, 0)
+    call draft%note_elements(first, model%mesh%ne, material, body, command%at)
     call add_sets(model, name, in_place(command%at), new%patch%dp, first, new%patch%elements())
   end subroutine add_to_mesh
 

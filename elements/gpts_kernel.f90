@@ -20,8 +20,8 @@ module gpts_kernel
   !!     ke(:,kb) = N (dp/dg N)_kb + N_a p ( D_a + g m^ac Nbar_c )_kb
   !!              + D_a p ( Nbar_a - g k_ac m^cd Nbar_d )_kb          (times w_g j_g)
   !!
-  !! The gradient of the dissipation is dD/dg N w_g j_g = fe dissipation_slope / (p w_g j_g), with the
-  !! slope times w_g j_g as it is returned; where the slope is not zero, p is not either.
+  !! The gradient of the dissipation, dD/dg N w_g j_g, is fe dissipation_slope / (p w_g j_g): the
+  !! returned slope includes w_g j_g, and p vanishes only where the slope does too.
   use kinds, only: wp
   use status_codes, only: ok, singular_projection
   use surface_frame, only: tangent_frame_at, metric_and_curvature

@@ -38,7 +38,7 @@ contains
     real(wp), contiguous, intent(in) :: xe(:,:)        !! control points (ndm,nen) [length]
     real(wp), contiguous, intent(in) :: dshp(:,:)      !! parametric derivatives (ndm,nen)
     real(wp), contiguous, intent(in) :: d2shp(:,:)     !! second ones (ndm(ndm+1)/2,nen)
-    real(wp), contiguous, intent(out) :: dshpx(:,:)    !! R_,i (ndm,nen) [1/length], zero if inverted
+    real(wp), contiguous, intent(out) :: dshpx(:,:)    !! R_,i (ndm,nen) [1/length]
     real(wp), contiguous, intent(out) :: d2shpx(:,:)   !! R_,ij (ndm(ndm+1)/2,nen) [1/length^2]
     integer, intent(out) :: status                     !! ok or inverted_element
 

@@ -162,8 +162,8 @@ contains
     integer, intent(in) :: nd                          !! highest derivative wanted: 0, 1 or 2
     real(wp), contiguous, intent(inout) :: shp(:)      !! R (nen)
     real(wp), contiguous, intent(inout) :: dshp(:,:)   !! R_,i (dp,nen), untouched when nd < 1
-    real(wp), contiguous, intent(inout) :: d2shp(:,:)  !! R_,ij (dp(dp+1)/2,nen), untouched when nd
-                                                       !! < 2
+    real(wp), contiguous, intent(inout) :: d2shp(:,:)  !! R_,ij (dp(dp+1)/2,nen), untouched when
+                                                       !! nd < 2
     integer, intent(out) :: status                     !! ok or bad_weight
 
     real(wp) :: bez(size(ce,2))

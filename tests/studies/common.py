@@ -1,0 +1,67 @@
+"""What the studies share: running decks, reading histories, writing tables and figures where the README shows them."""
+import csv
+import os
+import pathlib
+import re
+import subprocess
+import time
+
+root = pathlib.Path(os.environ["BEZEL_ROOT"])
+build = pathlib.Path(os.environ["BEZEL_BUILD"])
+work = build / "studies"
+pictures = root / "inputs" / "pictures"
+
+
+class Run:
+    """One run of a deck: exit status, log text, wall-clock seconds, history by column name."""
+
+    def __init__(self, deck, label, **parameters):
+        self.folder = work / label
+        work.mkdir(parents=True, exist_ok=True)
+        arguments = [f"{name}={value}" for name, value in parameters.items()]
+        began = time.perf_counter()
+        done = subprocess.run([build / "bezel", root / deck, *arguments, "--out", self.folder],
+                              capture_output=True, text=True, cwd=work)
+        self.seconds = time.perf_counter() - began
+        self.status = done.returncode
+        self.log = done.stdout
+        self.errors = done.stderr
+        self.history = history(self.folder / "history.csv") if (self.folder / "history.csv").exists() else {}
+
+    def share(self, phase):
+        """Seconds that the log gives to a phase of the run (elements, factorise, ...)."""
+        found = re.search(rf"^  {phase} +([0-9.]+) s", self.log, re.M)
+        return float(found.group(1)) if found else 0.0
+
+    @property
+    def iterations(self):
+        return sum(self.history["iterations"])
+
+
+def history(path):
+    """Columns of a history.csv as lists of floats."""
+    with open(path) as file:
+        rows = list(csv.DictReader(file))
+    return {name: [float(row[name]) for row in rows] for name in rows[0]} if rows else {}
+
+
+def table(name, header, rows):
+    """Put a table between the README's marks `<!-- table NAME -->` and `<!-- end -->`, and print it."""
+    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
+    lines += ["| " + " | ".join(str(item) for item in row) + " |" for row in rows]
+    text = "\n".join(lines)
+    print(text, flush=True)
+    readme = root / "README.md"
+    old = readme.read_text() if readme.exists() else ""
+    marks = re.compile(rf"(<!-- table {re.escape(name)} -->\n).*?(<!-- end -->)", re.S)
+    if marks.search(old):
+        readme.write_text(marks.sub(lambda m: m.group(1) + text + "\n" + m.group(2), old))
+    else:
+        print(f"(README.md has no mark for table {name})")
+
+
+def figure(plot, name):
+    """Save a figure beside the decks."""
+    pictures.mkdir(exist_ok=True)
+    plot.savefig(pictures / f"{name}.png", dpi=110)
+    print(f"figure {pictures / name}.png", flush=True)
