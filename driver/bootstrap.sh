@@ -69,7 +69,9 @@ build() {
     fingerprint "$folder" >"$stamp"
   fi
   if ! cmake --build "$folder" --target "$@" >"$log" 2>&1; then
-    grep -vE '^(\[[0-9]+/[0-9]+\] [A-Z]|-- )' "$log" >&2
+    # Of ninja's output only what belongs to the failed steps.
+    awk '/^FAILED/ { on = 1 } /^\[[0-9]+\/[0-9]+\]/ { on = 0 } on { print; some = 1 } END { exit !some }' "$log" >&2 ||
+      cat "$log" >&2
     rm -f "$log"
     give_up "the build failed"
   fi

@@ -1,8 +1,10 @@
 module condition_commands
   !! BOUNdary, DISPlacement, FORCe, FPROportional, PROPortional, LINK and SLOAd.
   !!
-  !! Differences from FEAP: a record may name a set instead of a node; codes and values of several records add up to
-  !! one condition (see module conditions); generated nodes take the codes of the record before, whatever their
+  !! Differences from FEAP: a record may name a set instead of a node; codes and values of several
+  !! records add up to
+  !! one condition (see module conditions); generated nodes take the codes of the record before,
+  !! whatever their
   !! sign; time functions are mesh commands, lists of time and value.
   use kinds, only: wp
   use messages, only: message_log, string, quoted, whole_text, known_names
@@ -17,28 +19,31 @@ module condition_commands
 
 contains
 
-  subroutine read_values(deck, model, list, n_list, keeps, whole, log)
-    !! Records `n ng v1 v2 ..` or `set v1 v2 ..`. From node n to that of the next record, nodes n+ng, n+2ng, ... get
-    !! values on a line between both, or those of the first.
+  subroutine read_values(deck, command, model, draft, log)
+    !! BOUNdary, DISPlacement, FORCe, FPROportional: records `n ng v1 v2 ..` or `set v1 v2 ..`. From
+    !! node n to that of
+    !! the next record, nodes n+ng, n+2ng, ... get values on a line between both (DISP, FORC), or
+    !! those of the first.
     type(deck_type), intent(inout) :: deck
+    type(record), intent(in) :: command
     type(model_type), intent(in) :: model
-    type(value_request), allocatable, intent(inout) :: list(:)
-    integer, intent(inout) :: n_list
-    logical, intent(in) :: keeps              !! generated nodes take the values of the first
-    logical, intent(in) :: whole              !! values are whole numbers
+    type(draft_type), intent(inout) :: draft
     type(message_log), intent(inout) :: log
     type(record) :: rec
     type(value_request) :: new, generated
     character(:), allocatable :: set
     integer :: i, ng, n_old, ng_old, node
     real(wp) :: v(model%ndf), v_old(model%ndf)
-    logical :: is_node, more
+    logical :: is_node, more, whole
+    type(string), allocatable :: names(:)
 
+    whole = command%key(1) == 'boun' .or. command%key(1) == 'fpro'
+    allocate (names, source=draft%set_names_so_far(model))
     n_old = 0
     ng_old = 0
     v_old = 0
     do
-      call next_line(deck, rec, log, more)
+      call next_line(deck, rec, log, more, names=names)
       if (.not. more) exit
       if (rec%is_damaged) cycle
       call node_or_set(rec, 1, is_node, node, set, log)
@@ -46,7 +51,8 @@ contains
       ng = 0
       if (is_node) call rec%integer(2, ng, log, 'increment', 0)
       i = merge(3, 2, is_node)
-      call rec%check_count(i, i - 1 + model%ndf, log, trim(merge('node, increment, values', 'set, values            ', &
+      call rec%check_count(i, i - 1 + model%ndf, log, trim(merge('node, increment, values', &
+        'set, values            ', &
         is_node)))
       if (rec%count < i) cycle
       v = 0
@@ -57,26 +63,40 @@ contains
         new%last = node
         if (n_old > 0 .and. ng_old /= 0) then
           if (mod(node - n_old, ng_old) /= 0 .or. (node - n_old)/ng_old < 1) then
-            call rec%add_error(log, 'node ' // whole_text(node) // ' cannot be reached from ' // whole_text(n_old) // &
+            call rec%add_error(log, 'node ' // whole_text(node) // ' cannot be reached from ' // &
+              whole_text(n_old) // &
               ' in steps of ' // whole_text(ng_old), 'Correct the increment of the record before')
           else if ((node - n_old)/ng_old > 1) then
             generated = new
             generated%first = n_old
-            generated%last = merge(node - ng_old, node, keeps)
+            generated%last = merge(node - ng_old, node, whole)
             generated%step = ng_old
             generated%v1 = v_old
-            generated%keeps = keeps
-            call append_value(list, n_list, generated)
+            generated%keeps = whole
+            call keep(generated)
           end if
         end if
       else
         new%set = set
       end if
-      call append_value(list, n_list, new)
+      call keep(new)
       n_old = merge(node, 0, is_node)
       ng_old = ng
       v_old = v
     end do
+
+  contains
+
+    subroutine keep(request)
+      type(value_request), intent(in) :: request
+
+      select case (command%key(1))
+      case ('boun'); call append_value(draft%boundary, draft%n_boundary, request)
+      case ('disp'); call append_value(draft%displacement, draft%n_displacement, request)
+      case ('forc'); call append_value(draft%force, draft%n_force, request)
+      case default;  call append_value(draft%proportional, draft%n_proportional, request)
+      end select
+    end subroutine keep
   end subroutine read_values
 
   subroutine read_components(rec, first, v, whole, log)
@@ -136,7 +156,8 @@ contains
       end do
     end do
     if (size(new%t) == 0) then
-      call command%add_error(log, 'the time function is empty', 'Give lines of time and value, then a blank line')
+      call command%add_error(log, 'the time function is empty', &
+        'Give lines of time and value, then a blank line')
       new%t = [0.0_wp]
       new%v = [0.0_wp]
     end if
@@ -155,17 +176,19 @@ contains
     logical :: more
 
     do
-      call next_line(deck, rec, log, more)
+      call next_line(deck, rec, log, more, names=draft%set_names_so_far(model))
       if (.not. more) exit
       if (rec%is_damaged) cycle
       error_count = log%error_count()
       if (rec%count < 3 .or. mod(rec%count, 3) /= 0) then
-        call rec%add_error(log, 'expected groups of three items, found ' // whole_text(rec%count) // ' items', &
+        call rec%add_error(log, 'expected groups of three items, found ' // &
+          whole_text(rec%count) // ' items', &
           'Write slave comp constant node1 comp1 coef1 ...')
         cycle
       end if
       new = link_request(at=rec%at)
-      allocate (new%masters(rec%count/3 - 1), new%comps(rec%count/3 - 1), new%coefs(rec%count/3 - 1))
+      allocate (new%masters(rec%count/3 - 1), new%comps(rec%count/3 - 1), &
+        new%coefs(rec%count/3 - 1))
       call read_dof(1, new%slave, new%comp)
       call rec%number(3, new%constant, log, 'constant', 0.0_wp)
       do i = 1, size(new%masters)
@@ -187,7 +210,8 @@ contains
       call node_or_set(rec, i, is_node, node, name, log)
       if (is_node) name = whole_text(node)
       call rec%integer(i + 1, comp, log, 'direction')
-      if (comp < 1 .or. comp > model%ndf) call rec%add_error(log, 'there is no direction ' // whole_text(comp), &
+      if (comp < 1 .or. comp > model%ndf) call rec%add_error(log, 'there is no direction ' // &
+        whole_text(comp), &
         'Directions are 1 to ' // whole_text(model%ndf), i + 1)
     end subroutine read_dof
   end subroutine read_links
@@ -208,7 +232,8 @@ contains
     case ('trac'); new%load%kind = 'traction'
     case ('body'); new%load%kind = 'body'
     case default
-      call command%add_error(log, 'unknown load ' // quoted(command%word(3)), known_names([character(8) :: &
+      call command%add_error(log, 'unknown load ' // quoted(command%word(3)), &
+        known_names([character(8) :: &
         'PRESsure', 'FOLLower', 'TRACtion', 'BODY'], 'loads'), 3)
       return
     end select
@@ -220,7 +245,8 @@ contains
     call command%integer_option('prop', new%load%prop, log)
     call command%integer_option('gp', new%load%gp, log)
     if (new%load%gp < 0) call command%add_error(log, 'a negative number of Gauss points', '')
-    call command%check_options([character(8) :: 'prop', 'gp', 'pressure', 'follower', 'traction', 'body'], log)
+    call command%check_options([character(8) :: 'prop', 'gp', 'pressure', 'follower', 'traction', &
+      'body'], log)
     draft%loads = [draft%loads, new]
   end subroutine read_surface_load
 end module condition_commands

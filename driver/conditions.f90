@@ -1,6 +1,8 @@
 module conditions
-  !! Boundary codes, prescribed values, nodal forces, time functions and links, put on the nodes of the finished mesh.
-  !! Codes accumulate (a dof that any record fixes is fixed); of values, a later nonzero one replaces an earlier.
+  !! Boundary codes, prescribed values, nodal forces, time functions and links, put on the nodes of
+  !! the finished mesh.
+  !! Codes accumulate (a dof that any record fixes is fixed); of values, a later nonzero one
+  !! replaces an earlier.
   use kinds, only: wp
   use messages, only: message_log, deck_place, whole_text, quoted, name_hint, in_place
   use number_text, only: read_number, equal
@@ -74,14 +76,17 @@ contains
             if (model%fixed(j, a) .and. .not. told) then
               told = .true.
               call log%add_warning(request%at, command, 'direction ' // whole_text(j) // ' of ' // &
-                target_name(request, a) // ' is fixed, the force on it only adds to the reaction', '')
+                target_name(request, a) // ' is fixed, the force on it only adds to the reaction', &
+                '')
             end if
           case default
             number(j, a) = nint(v(j))
             if (.not. any(model%props(:)%number == number(j, a)) .and. .not. told) then
               told = .true.
-              call log%add_error(request%at, command, 'there is no time function ' // whole_text(number(j, a)), &
-                'Define it: PROPortional ' // whole_text(number(j, a)) // ', then lines of time and value')
+              call log%add_error(request%at, command, 'there is no time function ' // &
+                whole_text(number(j, a)), &
+                'Define it: PROPortional ' // whole_text(number(j, a)) // &
+                ', then lines of time and value')
             end if
           end select
         end do
@@ -153,8 +158,10 @@ contains
         masters = [integer ::]
         do k = 1, size(request%masters)
           call nodes_of_name(model, draft, request%at, request%masters(k)%s, one, log)
-          if (size(one) > 1) call log%add_error(request%at, 'LINK', 'the set ' // request%masters(k)%s // ' has ' // &
-            whole_text(size(one)) // ' nodes', 'A value is linked to single nodes; the slave may be a set')
+          if (size(one) > 1) call log%add_error(request%at, 'LINK', 'the set ' // &
+            request%masters(k)%s // ' has ' // &
+            whole_text(size(one)) // ' nodes', &
+            'A value is linked to single nodes; the slave may be a set')
           good = good .and. size(one) == 1
           masters = [masters, one]
         end do
@@ -164,12 +171,15 @@ contains
           link = linear_constraint(node=n, comp=request%comp, nodes=masters, comps=request%comps, &
             coefs=request%coefs, constant=request%constant, place=in_place(request%at))
           if (any(masters == n .and. request%comps == request%comp)) then
-            call log%add_error(request%at, 'LINK', 'node ' // whole_text(n) // ' is linked to itself', '')
+            call log%add_error(request%at, 'LINK', 'node ' // whole_text(n) // &
+              ' is linked to itself', '')
           else if (model%fixed(request%comp, n)) then
-            call log%add_error(request%at, 'LINK', 'direction ' // whole_text(request%comp) // ' of node ' // &
+            call log%add_error(request%at, 'LINK', 'direction ' // whole_text(request%comp) // &
+              ' of node ' // &
               whole_text(n) // ' is fixed already', 'A value is either fixed or linked')
           else if (which(request%comp, n) > 0) then
-            call log%add_error(request%at, 'LINK', 'direction ' // whole_text(request%comp) // ' of node ' // &
+            call log%add_error(request%at, 'LINK', 'direction ' // whole_text(request%comp) // &
+              ' of node ' // &
               whole_text(n) // ' is linked already in ' // links(which(request%comp, n))%place, '')
           else
             links = [links, link]
@@ -199,7 +209,8 @@ contains
         end do
         if (m == 0) exit
         if (m == l .or. round > size(links)) then
-          call log%add_error(draft%links(1)%at, 'LINK', 'the links of node ' // whole_text(links(l)%node) // &
+          call log%add_error(draft%links(1)%at, 'LINK', 'the links of node ' // &
+            whole_text(links(l)%node) // &
             ' run in a circle (' // links(l)%place // ')', '')
           return
         end if

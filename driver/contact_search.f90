@@ -3,19 +3,19 @@ module contact_search
   !!
   !! Local: from the last facet and xi; a projection that leaves a facet goes on to its neighbour. Global, for points
   !! without a facet: a tree of bounding boxes gives the facets nearby, nearest box first; the nearest valid
-  !! projection wins. Between two facets that meet in a kink which bends away from the point neither projection is
-  !! valid: there the facet is extended by a small part of its length. Beyond the master's edge a point is unpaired.
+  !! projection wins. Where two facets meet in a kink there may be no valid projection: then the nearest point of the
+  !! kink is the pair, and `held` says in which directions xi rests there. Beyond the master's edge a point is
+  !! unpaired.
   use kinds, only: wp
   use status_codes, only: ok, outside_facet
   use facets, only: facet_surface
   use box_tree, only: box_tree_type
-  use rational_basis, only: shape_functions
   use closest_point, only: projection_report, homogeneous_points, closest_point_of_bezier, find_closest_point_global
   implicit none (type, external)
   private
   public :: master_search, start_search, move_master, pair_point
 
-  real(wp), parameter :: extension = 0.05_wp  !! how far a facet may be extended at a kink, in xi
+  real(wp), parameter :: near_side = 0.05_wp  !! so near to a side, in xi, the neighbour may be nearer
   integer, parameter :: most_hops = 64        !! facets a point may cross in one iteration before the tree is asked
   integer, parameter :: most_candidates = 16  !! facets that a global search looks at
 
@@ -106,7 +106,7 @@ contains
     search%boxes_moved = search%moved
   end subroutine form_boxes
 
-  subroutine pair_point(search, surface, w, xs, facet, xi)
+  subroutine pair_point(search, surface, w, xs, facet, xi, held)
     !! Pair a slave point. On entry facet and xi are the last pairing (facet 0: none); on return the new one.
     type(master_search), intent(inout) :: search
     type(facet_surface), intent(in), target :: surface
@@ -114,10 +114,12 @@ contains
     real(wp), intent(in) :: xs(:)                !! slave point (ndm) [length]
     integer, intent(inout) :: facet
     real(wp), intent(inout) :: xi(:)             !! (dp)
+    logical, intent(out) :: held(:)              !! xi rests on a kink in this direction (dp)
     type(projection_report) :: report
     integer :: hop, f, status, last, previous, side
     real(wp) :: trial(size(xi))
-    logical :: found
+
+    held = .false.
 
     if (facet > 0) then
       f = facet
@@ -130,7 +132,11 @@ contains
         if (status == ok) then
           facet = f
           xi = trial
-          if (report%distance > search%reach) facet = 0
+          if (report%distance > search%reach) then
+            facet = 0
+          else if (any(xi < near_side .or. xi > 1 - near_side)) then
+            call try_neighbours(search, surface, w, xs, report%distance, facet, xi)
+          end if
           return
         end if
         if (status /= outside_facet) exit
@@ -141,19 +147,20 @@ contains
         f = surface%neighbour(side, f)
         if (f == 0) exit
         if (f == previous) then
-          ! to and fro across a kink: neither facet holds the projection, extend the one that misses less
-          call extend_projection(search, surface, w, xs, last, trial, found)
-          if (found) then
+          ! to and fro across a kink: neither facet holds the projection, the kink itself is nearest
+          if (report%distance <= search%reach) then
             facet = last
             xi = trial
-            return
+            held = report%sides(1:search%dp) /= 0
+          else
+            facet = 0
           end if
-          exit
+          return
         end if
         call carry_over(surface, last, f, side, trial)
       end do
     end if
-    call pair_globally(search, surface, w, xs, facet, xi)
+    call pair_globally(search, surface, w, xs, facet, xi, held)
   end subroutine pair_point
 
   pure subroutine carry_over(surface, from, to, side, xi)
@@ -176,19 +183,20 @@ contains
     end if
   end subroutine carry_over
 
-  subroutine pair_globally(search, surface, w, xs, facet, xi)
+  subroutine pair_globally(search, surface, w, xs, facet, xi, held)
     type(master_search), intent(inout) :: search
     type(facet_surface), intent(in), target :: surface
     real(wp), intent(in) :: w(:)
     real(wp), intent(in) :: xs(:)
     integer, intent(out) :: facet
     real(wp), intent(inout) :: xi(:)
-    integer :: near(most_candidates), n, c, f, status, edge
+    logical, intent(out) :: held(:)
+    integer :: near(most_candidates), n, c, f, status, edge, edge_sides(size(xi))
     integer, pointer, contiguous :: nodes(:)
     real(wp) :: trial(size(xi)), best, edge_best, edge_xi(size(xi))
     type(projection_report) :: report
-    logical :: found
 
+    held = .false.
     call form_boxes(search, surface, w)
     call search%tree%candidates(search%lo, search%hi, xs, search%reach, near, n)
     search%searches = search%searches + 1
@@ -210,76 +218,51 @@ contains
         edge_best = report%distance
         edge = f
         edge_xi = trial
+        edge_sides = report%sides(1:search%dp)
       end if
     end do
     if (facet > 0 .or. edge == 0) return
-    if (any([(surface%neighbour(f, edge) == 0, f=1, 2*search%dp)])) then
-      ! beyond the master's own edge, unless the point left through a side with a neighbour
-      nodes => surface%set%connectivity(edge)
-      trial = edge_xi
-      call find_closest_point_global(surface%set%degree(1:search%dp, edge), w(nodes), surface%set%operator(edge), &
-                                     search%x(:, nodes), xs, trial, report, status)
-      do c = 1, search%dp
-        if (report%sides(c) == 0) cycle
-        if (surface%neighbour(report%sides(c), edge) == 0) return
-      end do
-    end if
-    call extend_projection(search, surface, w, xs, edge, edge_xi, found)
-    if (found) then
-      facet = edge
-      xi = edge_xi
-    end if
+    do c = 1, search%dp  ! on the master's own edge the point is unpaired, on a kink it is paired with it
+      if (edge_sides(c) == 0) cycle
+      if (surface%neighbour(edge_sides(c), edge) == 0) return
+    end do
+    facet = edge
+    xi = edge_xi
+    held = edge_sides /= 0
   end subroutine pair_globally
 
-  subroutine extend_projection(search, surface, w, xs, facet, xi, found)
-    !! Newton on the facet's own continuation, a little beyond its bounds.
-    type(master_search), intent(in) :: search
+  subroutine try_neighbours(search, surface, w, xs, distance, facet, xi)
+    !! Near a kink that bends towards the point both facets hold a projection: the nearer one counts.
+    type(master_search), intent(inout) :: search
     type(facet_surface), intent(in), target :: surface
     real(wp), intent(in) :: w(:)
     real(wp), intent(in) :: xs(:)
-    integer, intent(in) :: facet
+    real(wp), intent(in) :: distance             !! to the present facet [length]
+    integer, intent(inout) :: facet
     real(wp), intent(inout) :: xi(:)
-    logical, intent(out) :: found
-    integer, pointer, contiguous :: nodes(:)
-    real(wp) :: shp(surface%set%nen(facet)), dshp(search%dp, surface%set%nen(facet))
-    real(wp) :: d2shp(search%dp*(search%dp + 1)/2, surface%set%nen(facet))
-    real(wp) :: d(search%ndm), tau(search%ndm, 2), curve(search%ndm, 3), f(2), a(3), step(2), det
-    integer :: iteration, status, k, node
+    type(projection_report) :: report
+    real(wp) :: trial(size(xi)), best, best_xi(size(xi))
+    integer :: a, side, f, status, best_facet
 
-    found = .false.
-    nodes => surface%set%connectivity(facet)
-    do iteration = 1, 20
-      call shape_functions(surface%set%degree(1:search%dp, facet), w(nodes), surface%set%operator(facet), xi, 2, &
-                           shp, dshp, d2shp, status)
-      if (status /= ok) return
-      d = xs
-      tau = 0
-      curve = 0
-      do node = 1, size(nodes)
-        d = d - shp(node)*search%x(:, nodes(node))
-        do k = 1, search%dp
-          tau(:, k) = tau(:, k) + dshp(k, node)*search%x(:, nodes(node))
-        end do
-        do k = 1, size(d2shp, 1)
-          curve(:, k) = curve(:, k) + d2shp(k, node)*search%x(:, nodes(node))
-        end do
-      end do
-      f = [dot_product(tau(:, 1), d), dot_product(tau(:, 2), d)]
-      a(1) = dot_product(tau(:, 1), tau(:, 1)) - dot_product(d, curve(:, 1))
-      if (search%dp == 1) then
-        if (.not. a(1) > 0) return
-        step = [f(1)/a(1), 0.0_wp]
-      else
-        a(2) = dot_product(tau(:, 2), tau(:, 2)) - dot_product(d, curve(:, 2))
-        a(3) = dot_product(tau(:, 1), tau(:, 2)) - dot_product(d, curve(:, 3))
-        det = a(1)*a(2) - a(3)**2
-        if (.not. (a(1) > 0 .and. det > 0)) return
-        step = [a(2)*f(1) - a(3)*f(2), a(1)*f(2) - a(3)*f(1)]/det
-      end if
-      xi = xi + step(1:search%dp)
-      if (any(xi < -extension) .or. any(xi > 1 + extension)) return
-      if (all(abs(step) <= 1.0e-14_wp)) exit
+    best = distance - 1.0e-12_wp*search%reach
+    best_facet = facet
+    best_xi = xi
+    do a = 1, search%dp
+      if (xi(a) >= near_side .and. xi(a) <= 1 - near_side) cycle
+      side = 2*a - merge(1, 0, xi(a) < near_side)
+      f = surface%neighbour(side, facet)
+      if (f == 0) cycle
+      trial = xi
+      call carry_over(surface, facet, f, side, trial)
+      call form_facet(search, surface, w, f)
+      call closest_point_of_bezier(surface%set%degree(1:search%dp, f), &
+        search%q(:, search%q_ptr(f):search%q_ptr(f + 1) - 1), xs, trial, report, status)
+      if (status /= ok .or. report%distance >= best) cycle
+      best = report%distance
+      best_facet = f
+      best_xi = trial
     end do
-    found = all(abs(step) <= 1.0e-12_wp)
-  end subroutine extend_projection
+    facet = best_facet
+    xi = best_xi
+  end subroutine try_neighbours
 end module contact_search

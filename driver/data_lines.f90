@@ -1,7 +1,8 @@
 module data_lines
-  !! Lines of the data sets of mesh commands: where a set ends, items that are a name or a number, law data.
+  !! Lines of the data sets of mesh commands: where a set ends, items that are a name or a number,
+  !! law data.
   use kinds, only: wp
-  use messages, only: message_log, lower_case, quoted, in_place
+  use messages, only: message_log, string, lower_case, quoted, in_place
   use expressions, only: value, number_value, word_value
   use deck_record, only: record
   use deck_reader, only: deck_type => deck
@@ -10,14 +11,17 @@ module data_lines
   private
   public :: next_line, name_or_number, node_or_set, as_property, mesh_command, mesh_commands_known
 
-  character(16), parameter :: mesh_commands_known(20) = [character(16) :: 'COORdinates', 'ELEMents', 'OPERator', &
-    'BEZIer', 'PATCh', 'TIE', 'SET', 'MATErial', 'BOUNdary', 'DISPlacement', 'FORCe', 'FPROportional', &
+  character(16), parameter :: mesh_commands_known(20) = [character(16) :: 'COORdinates', &
+    'ELEMents', 'OPERator', &
+    'BEZIer', 'PATCh', 'TIE', 'SET', 'MATErial', 'BOUNdary', 'DISPlacement', 'FORCe', &
+    'FPROportional', &
     'PROPortional', 'SLOAd', 'LINK', 'CONTact', 'HISTory', 'OUTPut', 'RESTart', 'END']
 
 contains
 
   pure integer function mesh_command(word)
-    !! Index of the mesh command that a word is (its first four letters, or more of them); 0 if it is none.
+    !! Index of the mesh command that a word is (its first four letters, or more of them); 0 if it
+    !! is none.
     character(*), intent(in) :: word
     integer :: i, n
 
@@ -32,25 +36,34 @@ contains
     mesh_command = 0
   end function mesh_command
 
-  subroutine next_line(deck, rec, log, more, may_end)
-    !! The next line of a data set. A mesh command ends the set as a blank line does, after a message: the
-    !! blank line is missing.
+  subroutine next_line(deck, rec, log, more, may_end, names)
+    !! The next line of a data set. A mesh command ends the set as a blank line does; unless it is
+    !! END, with a message:
+    !! the blank line is missing.
     type(deck_type), intent(inout) :: deck
     type(record), intent(inout) :: rec
     type(message_log), intent(inout) :: log
     logical, intent(out) :: more                 !! .false.: the set has ended
     logical, intent(in), optional :: may_end     !! a command may follow without blank line
+    type(string), intent(in), optional :: names(:)  !! of sets that a line may begin with
     logical :: silent
+    integer :: i
 
     call deck%next_record(rec, log)
     more = .not. rec%ends_set
     if (.not. more) return
     if (rec%is_quoted(1)) return
     if (mesh_command(rec%word(1)) == 0) return
+    if (present(names)) then
+      do i = 1, size(names)
+        if (names(i)%s == rec%word(1)) return
+      end do
+    end if
     more = .false.
-    silent = .false.
+    silent = rec%key(1) == 'end'
     if (present(may_end)) silent = may_end
-    if (.not. silent) call rec%add_error(log, 'the data set is not ended before ' // quoted(rec%word(1)), &
+    if (.not. silent) call rec%add_error(log, 'the data set is not ended before ' // &
+      quoted(rec%word(1)), &
       'Put a blank line before it (a set of that name is written in quotes)')
     call deck%push_back(rec)
   end subroutine next_line

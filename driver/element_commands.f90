@@ -1,7 +1,9 @@
 module element_commands
-  !! ELEMents (FEAP's numbering of Lagrange elements), OPERator and BEZIer (elements with their extraction operators).
+  !! ELEMents (FEAP's numbering of Lagrange elements), OPERator and BEZIer (elements with their
+  !! extraction operators).
   !!
-  !! Differences from FEAP: element numbers rise one by one; 2D elements have 4 or 9 nodes, 3D elements 8; the rest is
+  !! Differences from FEAP: element numbers rise one by one; 2D elements have 4 or 9 nodes, 3D
+  !! elements 8; the rest is
   !! BEZIer's. `BODY=b` of a command gives its elements to body b (1).
   use kinds, only: wp
   use messages, only: message_log, whole_text, in_place
@@ -68,7 +70,8 @@ contains
   end subroutine end_origin
 
   subroutine check_number(rec, e, model, draft, log)
-    !! Element numbers rise one by one. A number that is wrong is told once, then counting goes on from there.
+    !! Element numbers rise one by one. A number that is wrong is told once, then counting goes on
+    !! from there.
     type(record), intent(in) :: rec
     integer, intent(in) :: e                     !! as the deck says
     type(model_type), intent(in) :: model
@@ -78,13 +81,15 @@ contains
 
     expected = model%mesh%ne + draft%lost_elements + 1
     if (e == expected) return
-    call rec%add_error(log, 'expected element ' // whole_text(expected) // ', found ' // whole_text(e), &
+    call rec%add_error(log, 'expected element ' // whole_text(expected) // ', found ' // &
+      whole_text(e), &
       'Element numbers rise one by one')
     draft%lost_elements = e - 1 - model%mesh%ne
   end subroutine check_number
 
   subroutine read_elements(deck, command, model, draft, log)
-    !! Records `n ng mat n1 n2 ...`: elements between n and that of the next record have nodes n1+ng, n1+2ng, ... (0: 1).
+    !! Records `n ng mat n1 n2 ...`: elements between n and that of the next record have nodes
+    !! n1+ng, n1+2ng, ... (0: 1).
     type(deck_type), intent(inout) :: deck
     type(record), intent(in) :: command          !! the command itself
     type(model_type), intent(inout) :: model
@@ -108,8 +113,10 @@ contains
       if (rec%is_damaged) cycle
       call begin_origin(draft, rec, 'ELEMents', '')
       if (.not. any(rec%count - 3 == merge([4, 9], [8, 8], model%ndm == 2))) then
-        call rec%add_error(log, 'an element with ' // whole_text(max(0, rec%count - 3)) // ' nodes', &
-          'Records are n ng mat n1 n2 ... with ' // trim(merge('4 or 9', '8     ', model%ndm == 2)) // &
+        call rec%add_error(log, 'an element with ' // whole_text(max(0, rec%count - 3)) // &
+          ' nodes', &
+          'Records are n ng mat n1 n2 ... with ' // trim(merge('4 or 9', '8     ', &
+          model%ndm == 2)) // &
           ' nodes; others are given by BEZIer')
         draft%lost_elements = draft%lost_elements + 1
         old_n = 0
@@ -178,7 +185,8 @@ contains
     new%at = command%at
     call command%integer(2, new%id, log, 'number of the operator')
     do i = 1, size(draft%operators)
-      if (draft%operators(i)%id == new%id) call command%add_error(log, 'operator ' // whole_text(new%id) // &
+      if (draft%operators(i)%id == new%id) call command%add_error(log, 'operator ' // &
+        whole_text(new%id) // &
         ' is defined twice', 'The first stands in ' // in_place(draft%operators(i)%at))
     end do
     allocate (rows(0, 0))
@@ -187,8 +195,10 @@ contains
       call next_line(deck, rec, log, more)
       if (.not. more) exit
       if (n > 0 .and. rec%count /= size(rows, 1)) then
-        call rec%add_error(log, 'this row has ' // whole_text(rec%count) // ' coefficients, the first has ' // &
-          whole_text(size(rows, 1)), 'A row is a function, its coefficients are those of the Bernstein polynomials')
+        call rec%add_error(log, 'this row has ' // whole_text(rec%count) // &
+          ' coefficients, the first has ' // &
+          whole_text(size(rows, 1)), &
+          'A row is a function, its coefficients are those of the Bernstein polynomials')
         cycle
       end if
       allocate (row(rec%count))
@@ -197,13 +207,15 @@ contains
       n = n + 1
       deallocate (row)
     end do
-    if (n == 0) call command%add_error(log, 'the operator has no rows', 'Give one row for each function')
+    if (n == 0) call command%add_error(log, 'the operator has no rows', &
+      'Give one row for each function')
     if (log%error_count() == error_count) call model%mesh%add_operator(transpose(rows), new%op)
     draft%operators = [draft%operators, new]
   end subroutine read_operator
 
   subroutine read_bezier(deck, command, model, draft, log)
-    !! Records `e DEGRee p q [r] NODEs n1 ... nn [MATErial=m] [OPERator=id]`, each followed, without OPERator, by nn rows
+    !! Records `e DEGRee p q [r] NODEs n1 ... nn [MATErial=m] [OPERator=id]`, each followed, without
+    !! OPERator, by nn rows
     !! of (p+1)(q+1)[(r+1)] coefficients.
     type(deck_type), intent(inout) :: deck
     type(record), intent(in) :: command
@@ -236,7 +248,8 @@ contains
       if (log%error_count() == error_count) then
         if (size(degree) < 1 .or. size(degree) > 3 .or. any(degree < 1)) call rec%add_error(log, &
           'an element has 1 to 3 degrees, all positive', 'Write e DEGRee p q NODEs n1 n2 ...')
-        if (size(nodes) == 0) call rec%add_error(log, 'the element has no nodes', 'Write e DEGRee p q NODEs n1 n2 ...')
+        if (size(nodes) == 0) call rec%add_error(log, 'the element has no nodes', &
+          'Write e DEGRee p q NODEs n1 n2 ...')
       end if
       if (log%error_count() > error_count) then
         if (operator == 0) call skip_rows(deck, size(nodes), log, more)
@@ -252,7 +265,8 @@ contains
           if (draft%operators(i)%id == operator) op = i
         end do
         if (op == 0) then
-          call rec%add_error(log, 'there is no operator ' // whole_text(operator), known_operators(draft))
+          call rec%add_error(log, 'there is no operator ' // whole_text(operator), &
+            known_operators(draft))
         else
           op = draft%operators(op)%op
           if (op > 0) call check_operator(rec, model, op, operator, size(nodes), nb, log)
@@ -278,13 +292,17 @@ contains
     type(record), intent(in) :: rec
     type(model_type), intent(in) :: model
     integer, intent(in) :: op, operator          !! its numbers in the mesh and in the deck
-    integer, intent(in) :: nen, nb               !! functions and Bernstein polynomials of the element
+    integer, intent(in) :: nen, nb               !! functions and Bernstein polynomials
     type(message_log), intent(inout) :: log
 
-    if (model%mesh%op_rows(op) /= nen) call rec%add_error(log, 'operator ' // whole_text(operator) // ' has ' // &
-      whole_text(model%mesh%op_rows(op)) // ' rows, the element has ' // whole_text(nen) // ' nodes', '')
-    if (model%mesh%op_columns(op) /= nb) call rec%add_error(log, 'operator ' // whole_text(operator) // &
-      ' has rows of ' // whole_text(model%mesh%op_columns(op)) // ' coefficients, the degrees need ' // &
+    if (model%mesh%op_rows(op) /= nen) call rec%add_error(log, 'operator ' // &
+      whole_text(operator) // ' has ' // &
+      whole_text(model%mesh%op_rows(op)) // ' rows, the element has ' // whole_text(nen) // &
+      ' nodes', '')
+    if (model%mesh%op_columns(op) /= nb) call rec%add_error(log, 'operator ' // &
+      whole_text(operator) // &
+      ' has rows of ' // whole_text(model%mesh%op_columns(op)) // &
+      ' coefficients, the degrees need ' // &
       whole_text(nb), '')
   end subroutine check_operator
 
@@ -338,12 +356,14 @@ contains
     do a = 1, size(ce, 1)
       call next_line(deck, rec, log, more)
       if (.not. more) then
-        call rec%add_error(log, 'element ' // whole_text(e) // ' has ' // whole_text(a - 1) // ' rows of ' // &
+        call rec%add_error(log, 'element ' // whole_text(e) // ' has ' // whole_text(a - 1) // &
+          ' rows of ' // &
           whole_text(size(ce, 1)), 'Give a row of its extraction operator for each node')
         return
       end if
       if (rec%count /= size(ce, 2)) then
-        call rec%add_error(log, 'row ' // whole_text(a) // ' of element ' // whole_text(e) // ' has ' // &
+        call rec%add_error(log, 'row ' // whole_text(a) // ' of element ' // whole_text(e) // &
+          ' has ' // &
           whole_text(rec%count) // ' coefficients', 'Its degrees need ' // whole_text(size(ce, 2)))
       else
         call rec%numbers(1, ce(a, :), log, 'coefficients')

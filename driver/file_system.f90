@@ -59,14 +59,13 @@ contains
     integer :: i
 
     done = .true.
-    do i = 2, len(path)
+    do i = 1, len(path)
       if (path(i:i) /= '/' .and. i < len(path)) cycle
       if (folder_exists(path(:i))) cycle
       call bezel_clear_error()
       done = c_mkdir(path(:i)//c_null_char, int(o'777', c_int)) == 0
       if (.not. done) return
     end do
-    if (len(path) == 1 .and. .not. folder_exists(path)) done = c_mkdir(path//c_null_char, int(o'777', c_int)) == 0
   end function make_folder
 
   function folder_exists(path) result(answer)

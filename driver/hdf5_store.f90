@@ -21,6 +21,8 @@ module hdf5_store
   integer(c_int), parameter :: local_scope = 0                                   ! H5F_SCOPE_LOCAL
   integer(i8), parameter :: chunk_items = 32768                                  !! wanted items in a chunk of a series
 
+  logical, save :: prepared = .false.    !! the library has been told what to leave out, once for the process
+
   type :: hdf5_store_type
     character(:), allocatable :: name      !! file, as the user knows it
     logical :: failed = .false.
@@ -94,6 +96,10 @@ module hdf5_store
       integer(c_int) :: code
     end function bezel_h5_silence
 
+    function h5dont_atexit() bind(c, name='H5dont_atexit') result(code)
+      import :: c_int
+      integer(c_int) :: code
+    end function h5dont_atexit
     function h5open() bind(c, name='H5open') result(code)
       import :: c_int
       integer(c_int) :: code
@@ -376,12 +382,19 @@ contains
     class(hdf5_store_type), intent(inout) :: self
     character(*), intent(in) :: name, written_name
 
+    integer(c_int) :: code
+
     if (self%is_open()) call self%close()
     self%failed = .false.
     if (allocated(self%message)) deallocate (self%message)
     self%name = name
     self%written_name = written_name
-    if (h5open() < 0 .or. bezel_h5_silence() < 0) call self%complain('the HDF5 library does not start')
+    ! every file is closed by this module; what the library does at exit crashes when a disk has become full
+    if (.not. prepared) call ignore(h5dont_atexit())
+    prepared = .true.
+    code = h5open()
+    if (code >= 0) code = bezel_h5_silence()
+    if (code < 0) call self%complain('the HDF5 library does not start')
   end subroutine begin
 
   subroutine close_file(self)
@@ -445,7 +458,8 @@ contains
 
     integer(hid) :: links, group
 
-    if (self%failed .or. self%has(path)) return
+    if (self%failed) return
+    if (self%has(path)) return
     links = bezel_h5_link_creation()
     group = h5gcreate(self%file, path//c_null_char, links, default_list, default_list)
     if (group < 0) then

@@ -7,7 +7,8 @@ module interface_commands
   use messages, only: message_log, deck_place, quoted, name_hint, in_place
   use deck_record, only: record
   use deck_reader, only: deck_type => deck
-  use model_data, only: model_type, interface_type, surface_load_type, history_request, set_elements, set_surface
+  use model_data, only: model_type, interface_type, surface_load_type, history_request, &
+    set_elements, set_surface
   use model_sets, only: find_set, find_set_of_kind, set_names, as_surface
   use mesh_draft, only: draft_type, interface_request
   use user_element, only: element_type, property_record
@@ -46,15 +47,20 @@ contains
       call command%integer_option('gp', new%gp, log)
       call command%integer_option('side', new%side, log)
       call command%number_option('reach', new%reach, log)
-      call command%check_options([character(7) :: 'slave', 'master', 'penalty', 'gp', 'side', 'reach'], log)
+      call command%check_options([character(7) :: 'slave', 'master', 'penalty', 'gp', 'side', &
+        'reach'], log)
       if (.not. command%has('penalty')) then
-        call command%add_error(log, 'the penalty is missing', 'Write PENAlty=e, a stiffness per area: pressure = e*depth')
+        call command%add_error(log, 'the penalty is missing', &
+          'Write PENAlty=e, a stiffness per area: pressure = e*depth')
       else if (.not. penalty > 0) then
         call command%add_error(log, 'the penalty must be positive', '', command%find('penalty'))
       end if
-      if (new%gp < 1) call command%add_error(log, 'at least one Gauss point is needed', 'Write GP=2', command%find('gp'))
-      if (abs(new%side) /= 1) call command%add_error(log, 'the side of a master is 1 or -1', '', command%find('side'))
-      if (new%reach < 0) call command%add_error(log, 'the reach of the search is a length', '', command%find('reach'))
+      if (new%gp < 1) call command%add_error(log, 'at least one Gauss point is needed', &
+        'Write GP=2', command%find('gp'))
+      if (abs(new%side) /= 1) call command%add_error(log, 'the side of a master is 1 or -1', '', &
+        command%find('side'))
+      if (new%reach < 0) call command%add_error(log, 'the reach of the search is a length', '', &
+        command%find('reach'))
       ! component by component: gfortran 12 allocates `words` too short in a structure constructor
       allocate (properties(1))
       properties(1)%place = new%place
@@ -67,7 +73,8 @@ contains
     places = [command%at]
     call read_properties(deck, properties, places, .true., log)
     call new_element('gpts', element, known)
-    if (penalty > 0) call define_element(element, model%ndm, 'CONTact', command%at, properties, places, log)
+    if (penalty > 0) call define_element(element, model%ndm, 'CONTact', command%at, properties, &
+      places, log)
     call move_alloc(element, model%interfaces(n + 1)%element)
     call note_surfaces(command, draft, log)
   end subroutine read_contact
@@ -83,7 +90,8 @@ contains
     new%master = ''
     call command%text_option('slave', new%slave, log)
     call command%text_option('master', new%master, log)
-    if (.not. command%has('slave')) call command%add_error(log, 'the slave surface is missing', 'Write SLAVe=surface')
+    if (.not. command%has('slave')) call command%add_error(log, 'the slave surface is missing', &
+      'Write SLAVe=surface')
     if (.not. command%has('master')) call command%add_error(log, 'the master surface is missing', &
       'Write MASTer=surface')
     draft%interfaces = [draft%interfaces, new]
@@ -111,9 +119,12 @@ contains
 
     do i = 1, size(draft%interfaces)
       associate (request => draft%interfaces(i))
-        model%interfaces(i)%slave = surface_of(model, draft, request%at, 'CONTact', 'slave surface', request%slave, log)
-        model%interfaces(i)%master = surface_of(model, draft, request%at, 'CONTact', 'master surface', request%master, log)
-        if (model%interfaces(i)%slave == model%interfaces(i)%master .and. model%interfaces(i)%slave > 0) call &
+        model%interfaces(i)%slave = surface_of(model, draft, request%at, 'CONTact', &
+          'slave surface', request%slave, log)
+        model%interfaces(i)%master = surface_of(model, draft, request%at, 'CONTact', &
+          'master surface', request%master, log)
+        if (model%interfaces(i)%slave == model%interfaces(i)%master &
+          .and. model%interfaces(i)%slave > 0) call &
           log%add_error(request%at, 'CONTact', 'slave and master are the same surface', &
           'Contact of a surface with itself needs two parts of it')
       end associate
@@ -162,11 +173,13 @@ contains
         if (load%kind == 'body') then
           load%set = find_set_of_kind(model, request%set, set_elements)
           if (load%set == 0) call log%add_error(request%at, 'SLOAd', 'there is no element set ' // &
-            quoted(request%set), name_hint(request%set, set_names(model, set_elements), 'element sets'))
+            quoted(request%set), name_hint(request%set, set_names(model, set_elements), &
+            'element sets'))
         else
           load%set = surface_of(model, draft, request%at, 'SLOAd', 'surface', request%set, log)
         end if
-        if (load%prop > 0 .and. .not. any(model%props(:)%number == load%prop)) call log%add_error(request%at, &
+        if (load%prop > 0 &
+          .and. .not. any(model%props(:)%number == load%prop)) call log%add_error(request%at, &
           'SLOAd', 'the time function of PROP is not defined', 'Define it by PROPortional')
         model%loads = [model%loads, load]
       end associate
@@ -186,7 +199,8 @@ contains
         new%place = in_place(request%at)
         if (len(request%set) > 0) then
           new%set = find_set(model, request%set)
-          if (new%set == 0) call log%add_error(request%at, 'HISTory', 'there is no set ' // quoted(request%set), &
+          if (new%set == 0) call log%add_error(request%at, 'HISTory', 'there is no set ' // &
+            quoted(request%set), &
             name_hint(request%set, set_names(model, 0), 'sets'))
         end if
         model%histories = [model%histories, new]

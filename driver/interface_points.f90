@@ -29,6 +29,7 @@ module interface_points
     real(wp), allocatable :: table(:, :)        !! (ntable,np) what the element precomputed
     integer, allocatable :: facet(:), facet_n(:)     !! (np) master facet, 0: unpaired; committed
     real(wp), allocatable :: xi(:, :), xi_n(:, :)    !! (dp,np) projection; committed
+    logical, allocatable :: held(:, :)          !! (dp,np) the projection rests on a kink in this direction
     real(wp), allocatable :: hist(:, :), hist_n(:, :) !! (nhist,np)
     real(wp), allocatable :: gap(:), traction(:)     !! (np) of the last assembly
     logical, allocatable :: active(:)           !! (np) it carried traction
@@ -80,6 +81,7 @@ contains
       allocate (points%facet_of(points%np), points%point(dp, points%np), points%table(points%ntable, points%np))
       allocate (points%facet(points%np), points%facet_n(points%np), points%room_for(points%np), source=0)
       allocate (points%xi(dp, points%np), points%xi_n(dp, points%np), source=0.5_wp)
+      allocate (points%held(dp, points%np), source=.false.)
       allocate (points%hist(points%nhist, points%np), points%hist_n(points%nhist, points%np), source=0.0_wp)
       allocate (points%gap(points%np), points%traction(points%np), source=0.0_wp)
       allocate (points%active(points%np), source=.false.)
@@ -148,7 +150,7 @@ contains
       do a = 1, size(nodes)
         xs = xs + points%table(1 + a, i)*x(:, nodes(a))
       end do
-      call pair_point(points%search, points%master, model%w, xs, points%facet(i), points%xi(:, i))
+      call pair_point(points%search, points%master, model%w, xs, points%facet(i), points%xi(:, i), points%held(:, i))
     end do
   end subroutine pair_interface
 
@@ -220,6 +222,7 @@ contains
         geo%master%nen = nm
         geo%master%degree = points%master%set%degree(1:2, m)
         geo%master%xi(1:dp) = points%xi(:, i)
+        geo%master%held(1:dp) = points%held(:, i)
         geo%master%we => wm(1:nm)
         geo%master%ce => points%master%set%operator(m)
         state%hist => points%hist(:, i)

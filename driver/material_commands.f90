@@ -37,18 +37,21 @@ contains
 
     call command%integer(2, number, log, 'number of the material')
     do i = 1, size(model%materials)
-      if (model%materials(i)%number == number) call command%add_error(log, 'material ' // whole_text(number) // &
+      if (model%materials(i)%number == number) call command%add_error(log, 'material ' // &
+        whole_text(number) // &
         ' is defined twice', 'The first stands in ' // model%materials(i)%place)
     end do
     allocate (properties(0), places(0))
     keyword = ''
     call next_line(deck, rec, log, more)
     if (.not. more) then
-      call command%add_error(log, 'the material has no element type', 'The first line is SOLId for example')
+      call command%add_error(log, 'the material has no element type', &
+        'The first line is SOLId for example')
     else
       keyword = rec%key(1)
       call new_element(keyword, element, known)
-      if (.not. allocated(element)) call rec%add_error(log, 'unknown element type ' // quoted(rec%word(1)), &
+      if (.not. allocated(element)) call rec%add_error(log, 'unknown element type ' // &
+        quoted(rec%word(1)), &
         'Known element types: ' // known, 1)
       if (rec%count > 1) then
         allocate (properties(1))
@@ -59,7 +62,8 @@ contains
     end if
     call define_element(element, model%ndm, 'MATErial', command%at, properties, places, log)
     if (allocated(element)) then
-      if (element%ndf > model%ndf) call command%add_error(log, 'the element has ' // whole_text(element%ndf) // &
+      if (element%ndf > model%ndf) call command%add_error(log, 'the element has ' // &
+        whole_text(element%ndf) // &
         ' dofs per node', 'Write at least this number as ndf, the fifth number after FEAP')
     end if
 

@@ -1,5 +1,6 @@
 module mesh_commands
-  !! The mesh part of a deck: from the line after FEAP to END. What follows is left in the deck for others.
+  !! The mesh part of a deck: from the line after FEAP to END. What follows is left in the deck for
+  !! others.
   use messages, only: message_log, quoted, name_hint, string, closest_name
   use deck_record, only: record
   use deck_reader, only: deck_type => deck
@@ -68,10 +69,7 @@ contains
     case ('tie');  call read_tie(rec, draft, log)
     case ('set');  call read_set(rec, draft, log)
     case ('mate'); call read_material(deck, rec, model, log)
-    case ('boun'); call read_values(deck, model, draft%boundary, draft%n_boundary, .true., .true., log)
-    case ('disp'); call read_values(deck, model, draft%displacement, draft%n_displacement, .false., .false., log)
-    case ('forc'); call read_values(deck, model, draft%force, draft%n_force, .false., .false., log)
-    case ('fpro'); call read_values(deck, model, draft%proportional, draft%n_proportional, .true., .true., log)
+    case ('boun', 'disp', 'forc', 'fpro'); call read_values(deck, rec, model, draft, log)
     case ('prop'); call read_proportional(deck, rec, model, log)
     case ('link'); call read_links(deck, model, draft, log)
     case ('sloa'); call read_surface_load(rec, model, draft, log)

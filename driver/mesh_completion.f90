@@ -1,5 +1,6 @@
 module mesh_completion
-  !! What happens at END: counts are compared, ties, sets and conditions are carried out, the model is checked.
+  !! What happens at END: counts are compared, ties, sets and conditions are carried out, the model
+  !! is checked.
   use messages, only: message_log, whole_text
   use model_data, only: model_type
   use mesh_draft, only: draft_type
@@ -66,7 +67,8 @@ contains
       integer, intent(in) :: announced, found
 
       if (announced == 0 .or. announced == found) return
-      call log%add_error(draft%header, 'FEAP', 'the deck announces ' // whole_text(announced) // ' ' // what // &
+      call log%add_error(draft%header, 'FEAP', 'the deck announces ' // whole_text(announced) // &
+        ' ' // what // &
         ' and has ' // whole_text(found), 'Correct ' // name // ', or write 0: it is counted then')
     end subroutine compare
   end subroutine compare_counts
@@ -74,7 +76,7 @@ contains
   subroutine find_materials(model, draft, all_found, log)
     type(model_type), intent(inout) :: model
     type(draft_type), intent(in) :: draft
-    logical, intent(out) :: all_found            !! every element has a material with an element formulation
+    logical, intent(out) :: all_found            !! every element has a formulation
     type(message_log), intent(inout) :: log
     integer :: e, i, last, last_index, told
     character(:), allocatable :: known
@@ -99,7 +101,8 @@ contains
         all_found = .false.
         if (told == last) cycle
         told = last
-        call log%add_error(draft%element_place(e), draft%element_name(e), 'element ' // whole_text(e) // &
+        call log%add_error(draft%element_place(e), draft%element_name(e), 'element ' // &
+          whole_text(e) // &
           ' has material ' // whole_text(last) // ', which is not defined', known)
       else if (.not. allocated(model%materials(last_index)%element)) then
         all_found = .false.

@@ -1,6 +1,8 @@
 module mesh_draft
-  !! The model while its deck is being read: nodes and elements as they come, and what can only be carried out at END,
-  !! because it names nodes and sets that may follow: ties, sets, conditions, loads, interfaces, histories.
+  !! The model while its deck is being read: nodes and elements as they come, and what can only be
+  !! carried out at END,
+  !! because it names nodes and sets that may follow: ties, sets, conditions, loads, interfaces,
+  !! histories.
   use kinds, only: wp
   use messages, only: deck_place, string
   use model_data, only: model_type, surface_load_type, history_request
@@ -8,7 +10,8 @@ module mesh_draft
   implicit none (type, external)
   private
   public :: append_value
-  public :: draft_type, element_origin, set_request, value_request, tie_request, load_request, interface_request, &
+  public :: draft_type, element_origin, set_request, value_request, tie_request, load_request, &
+    interface_request, &
     history_draft, link_request, named_operator
 
   type :: element_origin
@@ -32,7 +35,7 @@ module mesh_draft
   type :: value_request
     !! A record of BOUNdary, DISPlacement, FORCe or FPROportional.
     type(deck_place) :: at
-    character(:), allocatable :: set          !! its nodes; unallocated: nodes first, first+step, ..., last
+    character(:), allocatable :: set          !! its nodes; else first, first+step, ..., last
     integer :: first = 0, last = 0, step = 1
     logical :: keeps = .false.                !! all take v1
     real(wp), allocatable :: v1(:), v2(:)     !! values of the components at first and at last
@@ -88,7 +91,7 @@ module mesh_draft
     logical, allocatable :: defined(:)          !! has coordinates (nn)
     integer, allocatable :: material(:)         !! material number of each element as in the deck
     integer, allocatable :: body(:)             !! body of each element
-    integer, allocatable :: line(:), order(:)   !! of each element's record (its file is that of the origin)
+    integer, allocatable :: line(:), order(:)   !! of each element's record
     integer :: lost_elements = 0                !! that were not added because of errors
     logical :: has_lost_sets = .false.          !! some sets are empty because of errors
     type(element_origin), allocatable :: origins(:)
@@ -108,6 +111,7 @@ module mesh_draft
     procedure :: note_elements
     procedure :: element_place
     procedure :: element_name
+    procedure :: set_names_so_far
   end type draft_type
 
 contains
@@ -117,7 +121,8 @@ contains
     type(model_type), intent(inout) :: model
 
     allocate (self%x(model%ndm, 0), self%w(0), self%defined(0))
-    allocate (self%origins(0), self%operators(0), self%sets(0), self%ties(0), self%links(0), self%loads(0), &
+    allocate (self%origins(0), self%operators(0), self%sets(0), self%ties(0), self%links(0), &
+      self%loads(0), &
       self%interfaces(0), self%histories(0))
     allocate (self%boundary(0), self%displacement(0), self%force(0), self%proportional(0))
     allocate (model%sets(0), model%materials(0), model%props(0), model%links(0), model%loads(0), &
@@ -189,6 +194,23 @@ contains
     command = self%origins(i)%command
     if (len(self%origins(i)%name) > 0) command = command // ' ' // self%origins(i)%name
   end function element_name
+
+  function set_names_so_far(self, model) result(names)
+    !! Sets of patches and of SET commands that were read.
+    class(draft_type), intent(in) :: self
+    type(model_type), intent(in) :: model
+    type(string), allocatable :: names(:)
+    integer :: i, n
+
+    n = size(model%sets)
+    allocate (names(n + size(self%sets)))
+    do i = 1, n
+      names(i)%s = model%sets(i)%name
+    end do
+    do i = 1, size(self%sets)
+      names(n + i)%s = self%sets(i)%name
+    end do
+  end function set_names_so_far
 
   subroutine append_value(list, n, request)
     type(value_request), allocatable, intent(inout) :: list(:)

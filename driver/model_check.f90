@@ -1,5 +1,6 @@
 module model_check
-  !! What can be wrong with a model as a whole: weights, missing coordinates, inverted elements, nodes without elements.
+  !! What can be wrong with a model as a whole: weights, missing coordinates, inverted elements,
+  !! nodes without elements.
   !! Every finding names the data set that it comes from.
   use kinds, only: wp
   use status_codes, only: ok, bad_extraction, node_out_of_range, status_text
@@ -37,7 +38,8 @@ contains
         do k = 1, size(ix)
           if (ix(k) >= 1 .and. ix(k) <= model%nn) cycle
           told = told + 1
-          if (told <= most) call log%add_error(draft%element_place(e), draft%element_name(e), 'element ' // &
+          if (told <= most) call log%add_error(draft%element_place(e), draft%element_name(e), &
+            'element ' // &
             whole_text(e) // ' has node ' // whole_text(ix(k)) // ', which does not exist', &
             'Nodes are numbered from 1 to ' // whole_text(model%nn))
           exit
@@ -46,7 +48,8 @@ contains
     end do
     if (told > 0) return
     call model%mesh%check(model%nn, status, e)
-    if (status /= ok) call log%add_error(draft%element_place(e), draft%element_name(e), 'element ' // &
+    if (status /= ok) call log%add_error(draft%element_place(e), draft%element_name(e), &
+      'element ' // &
       whole_text(e) // ': ' // status_text(status), '')
   end subroutine check_mesh
 
@@ -66,13 +69,17 @@ contains
         a = model%mesh%nodes(k)
         if (told(a)) cycle
         if (.not. draft%defined(a)) then
-          fact = 'node ' // whole_text(a) // ' of element ' // whole_text(e) // ' has no coordinates'
-          call log%add_error(draft%element_place(e), draft%element_name(e), fact, 'Give them by COORdinates')
+          fact = 'node ' // whole_text(a) // ' of element ' // whole_text(e) // &
+            ' has no coordinates'
+          call log%add_error(draft%element_place(e), draft%element_name(e), fact, &
+            'Give them by COORdinates')
           told(a) = .true.
         else if (.not. model%w(a) > 0) then
-          fact = 'node ' // whole_text(a) // ' of element ' // whole_text(e) // ' has the weight ' // &
+          fact = 'node ' // whole_text(a) // ' of element ' // whole_text(e) // &
+            ' has the weight ' // &
             write_number(model%w(a))
-          call log%add_error(draft%element_place(e), draft%element_name(e), fact, 'Weights must be positive')
+          call log%add_error(draft%element_place(e), draft%element_name(e), fact, &
+            'Weights must be positive')
           told(a) = .true.
         end if
       end do
@@ -80,7 +87,8 @@ contains
   end subroutine check_nodes
 
   subroutine check_geometry(model, draft, log)
-    !! det J is positive at Gauss points and not negative at corners (where it may vanish: collapsed edges). One message
+    !! det J is positive at Gauss points and not negative at corners (where it may vanish: collapsed
+    !! edges). One message
     !! for each data set.
     type(model_type), intent(in) :: model
     type(draft_type), intent(in) :: draft
@@ -101,7 +109,8 @@ contains
       do e = draft%origins(i)%first, draft%origins(i)%last
         if (e == 0) exit
         if (model%mesh%dp(e) /= model%ndm .and. model%mesh%dp(e) /= model%ndm - 1) then
-          call log%add_error(draft%element_place(e), draft%element_name(e), 'element ' // whole_text(e) // &
+          call log%add_error(draft%element_place(e), draft%element_name(e), 'element ' // &
+            whole_text(e) // &
             ' has ' // whole_text(model%mesh%dp(e)) // ' parametric directions in a space of ' // &
             whole_text(model%ndm), '')
           cycle
@@ -117,13 +126,16 @@ contains
       end do
       if (bad == 0) cycle
       at = draft%element_place(first)
-      fact = 'inverted element at the start: element ' // whole_text(first) // ', det J = ' // write_number(worst) // &
+      fact = 'inverted element at the start: element ' // whole_text(first) // ', det J = ' // &
+        write_number(worst) // &
         ' at ' // point_text(worst_place)
-      remedy = 'Reverse one direction of the patch (in the plane its directions turn counter-clockwise)'
+      remedy = 'Reverse one direction of the patch (in the plane they turn counter-clockwise)'
       if (draft%origins(i)%command /= 'PATCh') remedy = 'Check its nodes and their order'
-      if (first_status /= ok .and. model%mesh%dp(first) < model%ndm) fact = 'element ' // whole_text(first) // &
+      if (first_status /= ok .and. model%mesh%dp(first) < model%ndm) fact = 'element ' // &
+        whole_text(first) // &
         ' has no area at ' // point_text(worst_place)
-      if (bad > 1) fact = fact // ' (and ' // whole_text(bad - 1) // ' more elements of this data set)'
+      if (bad > 1) fact = fact // ' (and ' // whole_text(bad - 1) // &
+        ' more elements of this data set)'
       call log%add_error(at, draft%element_name(first), fact, remedy)
     end do
   end subroutine check_geometry
@@ -135,7 +147,8 @@ contains
     real(wp), intent(out) :: detj                !! the first value that is wrong, or the smallest
     real(wp), intent(out) :: place(:)            !! where (ndm)
     integer, intent(out) :: status               !! ok or what is wrong
-    real(wp), allocatable :: xe(:, :), we(:), ce(:, :), shp(:), dshp(:, :), d2shp(:, :), dshpx(:, :), xi(:, :), wt(:)
+    real(wp), allocatable :: xe(:, :), we(:), ce(:, :), shp(:), dshp(:, :), d2shp(:, :), &
+      dshpx(:, :), xi(:, :), wt(:)
     integer, allocatable :: ix(:)
     real(wp) :: d, x(model%ndm), tau(model%ndm, model%ndm - 1), nrm(model%ndm), largest
     integer :: dp, g, ng, nen, op
@@ -146,7 +159,8 @@ contains
     nen = model%mesh%nen(e)
     ix = model%mesh%nodes(model%mesh%node_ptr(e):model%mesh%node_ptr(e + 1) - 1)
     op = model%mesh%operator_of(e)
-    ce = reshape(model%mesh%coef(model%mesh%op_ptr(op):model%mesh%op_ptr(op + 1) - 1), [nen, model%mesh%nb(e)])
+    ce = reshape(model%mesh%coef(model%mesh%op_ptr(op):model%mesh%op_ptr(op + 1) - 1), &
+      [nen, model%mesh%nb(e)])
     xe = model%x(:, ix)
     we = model%w(ix)
     allocate (shp(nen), dshp(dp, nen), d2shp((dp*(dp + 1))/2, nen), dshpx(dp, nen))
@@ -158,7 +172,8 @@ contains
     place = 0
     do g = 1, size(xi, 2)
       corner = g > ng
-      call shape_functions(model%mesh%degree(1:dp, e), we, ce, xi(:, g), 1, shp, dshp, d2shp, status)
+      call shape_functions(model%mesh%degree(1:dp, e), we, ce, xi(:, g), 1, shp, dshp, d2shp, &
+        status)
       x = matmul(xe, shp)
       if (status /= ok) then
         place = x
@@ -214,7 +229,8 @@ contains
   end function point_text
 
   subroutine switch_off_unused(model, draft, log)
-    !! Dofs that no element has are fixed at 0: those of nodes without elements, and components beyond an element's ndf.
+    !! Dofs that no element has are fixed at 0: those of nodes without elements, and components
+    !! beyond an element's ndf.
     type(model_type), intent(inout) :: model
     type(draft_type), intent(in) :: draft
     type(message_log), intent(inout) :: log
@@ -241,6 +257,7 @@ contains
       if (lonely == 1) first = a
     end do
     if (lonely > 0) call log%add_warning(draft%header, 'FEAP', whole_text(lonely) // &
-      ' nodes belong to no element (the first: node ' // whole_text(first) // ')', 'Their dofs are switched off')
+      ' nodes belong to no element (the first: node ' // whole_text(first) // ')', &
+      'Their dofs are switched off')
   end subroutine switch_off_unused
 end module model_check

@@ -1,13 +1,16 @@
 module model_sets
   !! Named sets of a model: finding them, the nodes that they hold, surfaces from them, unions.
-  !! Names are compared without regard to case. Several sets may have one name if their kinds differ.
+  !! Names are compared without regard to case. Several sets may have one name if their kinds
+  !! differ.
   use kinds, only: wp
   use messages, only: string, lower_case
-  use model_data, only: model_type, named_set, set_nodes, set_elements, set_surface, extraction_set_type
+  use model_data, only: model_type, named_set, set_nodes, set_elements, set_surface, &
+    extraction_set_type
   use side_extraction, only: side_functions, side_operator
   implicit none (type, external)
   private
-  public :: find_set, find_set_of_kind, set_names, add_set, nodes_of_set, used_nodes, as_surface, unite_sets, &
+  public :: find_set, find_set_of_kind, set_names, add_set, nodes_of_set, used_nodes, as_surface, &
+    unite_sets, &
     common_nodes, sorted_unique
 
 contains
@@ -88,7 +91,8 @@ contains
   end subroutine add_set
 
   function nodes_of_set(model, index) result(nodes)
-    !! The nodes themselves; all nodes of elements; of a surface those whose function does not vanish on it.
+    !! The nodes themselves; all nodes of elements; of a surface those whose function does not
+    !! vanish on it.
     type(model_type), intent(in), target :: model
     integer, intent(in) :: index             !! into model%sets
     integer, allocatable :: nodes(:)         !! increasing, each once
@@ -159,9 +163,10 @@ contains
   end subroutine used_nodes
 
   subroutine as_surface(model, index)
-    !! A set of elements one dimension below space (shells) is a surface as it stands: a set of that kind is added.
+    !! A set of elements one dimension below space (shells) is a surface as it stands: a set of that
+    !! kind is added.
     type(model_type), intent(inout) :: model
-    integer, intent(inout) :: index           !! of a set; of a surface on return, 0 if it cannot be one
+    integer, intent(inout) :: index      !! of a set; of a surface on return, 0 if it cannot be one
     integer :: i
 
     if (model%sets(index)%kind == set_surface) return
@@ -171,7 +176,8 @@ contains
         if (all(model%mesh%dp(set%items) == model%ndm - 1)) i = -1
       end associate
       if (i < 0) then
-        call add_set(model, model%sets(index)%name, model%sets(index)%place, set_surface, model%sets(index)%items, &
+        call add_set(model, model%sets(index)%name, model%sets(index)%place, set_surface, &
+          model%sets(index)%items, &
           0*model%sets(index)%items)
         i = size(model%sets)
       end if
@@ -182,8 +188,8 @@ contains
   subroutine unite_sets(model, indices, kind, items, sides)
     !! The union of sets of one kind is of that kind; of different kinds, the union of their nodes.
     type(model_type), intent(in), target :: model
-    integer, intent(in) :: indices(:)                          !! sets, at least one
-    integer, intent(out) :: kind                               !! set_nodes, set_elements, set_surface
+    integer, intent(in) :: indices(:)                      !! sets, at least one
+    integer, intent(out) :: kind                           !! set_nodes, set_elements, set_surface
     integer, allocatable, intent(out) :: items(:), sides(:)
     integer, allocatable :: keys(:)
     integer :: i

@@ -1,5 +1,6 @@
 module model_summary
-  !! What a model holds, for --check: counts, bodies with their area or volume, sets, materials, interfaces.
+  !! What a model holds, for --check: counts, bodies with their area or volume, sets, materials,
+  !! interfaces.
   use kinds, only: wp
   use status_codes, only: ok
   use number_text, only: write_number
@@ -27,18 +28,23 @@ contains
     call used_nodes(model, used)
     write (unit, '(a)') 'title       ' // trim(adjustl(model%title))
     write (unit, '(a,i0,a,i0)') 'space       ndm ', model%ndm, ', ndf ', model%ndf
-    write (unit, '(a,i0,a,i0,a)') 'nodes       ', count(used), ' (', size(used) - count(used), ' unused)'
+    write (unit, '(a,i0,a,i0,a)') 'nodes       ', count(used), ' (', size(used) - count(used), &
+      ' unused)'
     write (unit, '(a,i0,a,i0,a,i0,a)') 'dofs        ', model%ndf*count(used), ' (', &
-      count([(.not. model%fixed(:, a) .and. used(a), a = 1, model%nn)]), ' free, ', size(model%links), ' linked)'
-    write (unit, '(a,i0,a,i0,a)') 'elements    ', model%mesh%ne, ' (', model%mesh%nop, ' different operators)'
-    write (unit, '(a,i0,a,i0)') 'functions   per element ', minval([(model%mesh%nen(e), e = 1, model%mesh%ne)]), &
+      count([(.not. model%fixed(:, a) .and. used(a), a = 1, model%nn)]), ' free, ', &
+      size(model%links), ' linked)'
+    write (unit, '(a,i0,a,i0,a)') 'elements    ', model%mesh%ne, ' (', model%mesh%nop, &
+      ' different operators)'
+    write (unit, '(a,i0,a,i0)') 'functions   per element ', minval([(model%mesh%nen(e), e = 1, &
+      model%mesh%ne)]), &
       ' to ', maxval([(model%mesh%nen(e), e = 1, model%mesh%ne)])
     write (unit, '(a)') 'degrees     ' // degrees_text(model)
     do i = 1, maxval(model%body_of)
       if (any(model%body_of == i)) call describe_body(model, i, unit)
     end do
     do i = 1, size(model%materials)
-      write (unit, '(a,i0,1x,a,i0,a)') 'material    ', model%materials(i)%number, model%materials(i)%name // ' ', &
+      write (unit, '(a,i0,1x,a,i0,a)') 'material    ', model%materials(i)%number, &
+        model%materials(i)%name // ' ', &
         count(model%material_of == i), ' elements'
     end do
     size_text = ''
@@ -50,17 +56,21 @@ contains
         case (set_elements); size_text = whole_text(size(set%items)) // ' elements, '
         case (set_surface);  size_text = whole_text(size(set%items)) // ' facets, '
         end select
-        write (unit, '(a)') 'set         ' // set%name // ': ' // size_text // whole_text(size(nodes)) // ' nodes'
+        write (unit, '(a)') 'set         ' // set%name // ': ' // size_text // &
+          whole_text(size(nodes)) // ' nodes'
       end associate
     end do
     do i = 1, size(model%interfaces)
       associate (pair => model%interfaces(i))
-        write (unit, '(a)') 'interface   ' // pair%name // ': slave ' // model%sets(pair%slave)%name // ', master ' // &
-          model%sets(pair%master)%name // ', ' // whole_text(pair%gp) // ' Gauss points per direction'
+        write (unit, '(a)') 'interface   ' // pair%name // ': slave ' // &
+          model%sets(pair%slave)%name // ', master ' // &
+          model%sets(pair%master)%name // ', ' // whole_text(pair%gp) // &
+          ' Gauss points per direction'
       end associate
     end do
     do i = 1, size(model%loads)
-      write (unit, '(a)') 'load        ' // trim(model%loads(i)%kind) // ' on ' // model%sets(model%loads(i)%set)%name
+      write (unit, '(a)') 'load        ' // trim(model%loads(i)%kind) // ' on ' // &
+        model%sets(model%loads(i)%set)%name
     end do
   end subroutine describe_model
 
@@ -77,16 +87,20 @@ contains
       total = total + element_measure(model, e)
       dp = model%mesh%dp(e)
     end do
-    write (unit, '(a,i0,a,i0,a)') 'body        ', body, ': ', count(model%body_of == body), ' elements, ' // &
-      trim(merge('volume', merge('area  ', 'length', dp == 2), dp == 3)) // ' ' // write_number(total)
+    write (unit, '(a,i0,a,i0,a)') 'body        ', body, ': ', count(model%body_of == body), &
+      ' elements, ' // &
+      trim(merge('volume', merge('area  ', 'length', dp == 2), dp == 3)) // ' ' // &
+      write_number(total)
   end subroutine describe_body
 
   function element_measure(model, e) result(total)
-    !! Length, area or volume of an element in the reference configuration. The rule is exact for polynomial maps.
+    !! Length, area or volume of an element in the reference configuration. The rule is exact for
+    !! polynomial maps.
     type(model_type), intent(in) :: model
     integer, intent(in) :: e
     real(wp) :: total
-    real(wp), allocatable :: xe(:, :), we(:), ce(:, :), shp(:), dshp(:, :), d2shp(:, :), dshpx(:, :), xi(:, :), wt(:)
+    real(wp), allocatable :: xe(:, :), we(:), ce(:, :), shp(:), dshp(:, :), d2shp(:, :), &
+      dshpx(:, :), xi(:, :), wt(:)
     integer, allocatable :: ix(:)
     real(wp) :: j, x(model%ndm), tau(model%ndm, model%ndm - 1), nrm(model%ndm)
     integer :: dp, g, nen, ng, op, status
@@ -95,7 +109,8 @@ contains
     nen = model%mesh%nen(e)
     ix = model%mesh%nodes(model%mesh%node_ptr(e):model%mesh%node_ptr(e + 1) - 1)
     op = model%mesh%operator_of(e)
-    ce = reshape(model%mesh%coef(model%mesh%op_ptr(op):model%mesh%op_ptr(op + 1) - 1), [nen, model%mesh%nb(e)])
+    ce = reshape(model%mesh%coef(model%mesh%op_ptr(op):model%mesh%op_ptr(op + 1) - 1), &
+      [nen, model%mesh%nb(e)])
     xe = model%x(:, ix)
     we = model%w(ix)
     allocate (shp(nen), dshp(dp, nen), d2shp((dp*(dp + 1))/2, nen), dshpx(dp, nen))
@@ -104,7 +119,8 @@ contains
     call tensor_rule(model%mesh%degree(1:dp, e) + 4, xi, wt)
     total = 0
     do g = 1, ng
-      call shape_functions(model%mesh%degree(1:dp, e), we, ce, xi(:, g), 1, shp, dshp, d2shp, status)
+      call shape_functions(model%mesh%degree(1:dp, e), we, ce, xi(:, g), 1, shp, dshp, d2shp, &
+        status)
       if (status /= ok) return
       if (dp == model%ndm) then
         call physical_gradient(xe, dshp, dshpx, j, status)
@@ -122,7 +138,8 @@ contains
     integer, allocatable :: code(:)
     integer :: e, i, first
 
-    code = [(10000*model%mesh%degree(1, e) + 100*model%mesh%degree(2, e) + model%mesh%degree(3, e), &
+    code = [(10000*model%mesh%degree(1, e) + 100*model%mesh%degree(2, e) + model%mesh%degree(3, &
+      e), &
       e = 1, model%mesh%ne)]
     text = ''
     do

@@ -4,7 +4,8 @@ module newton
   !! The start is either the last increment continued (where all time functions go on at the rate they had), or the
   !! committed state with the prescribed increments put into the first linear system: K_ff dq = -R_f - K_fp du_p.
   !! After a correction whose energy |dq . r| is small a residual-only pass decides: a factorisation is never spent on
-  !! a state that has converged already.
+  !! a state that has converged already. A correction at the rounding of the values themselves also ends the iteration:
+  !! where stresses are small differences (nearly incompressible, high degree) the residual stays above any tolerance.
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use kinds, only: wp
   use status_codes, only: ok, no_convergence, status_text
@@ -23,6 +24,9 @@ module newton
     logical :: line_search = .false.
     real(wp) :: line_search_ratio = 0.8_wp       !! as in FEAP: accepted when |dq . r| falls below this share
   end type newton_settings
+
+  real(wp), parameter :: rounding = 100*epsilon(1.0_wp)   !! a relative correction that is only rounding
+  real(wp), parameter :: settled_residual = 1.0e-6_wp     !! and the relative residual that it may leave
 
   type :: newton_record
     !! One iteration, for the log and for the test of quadratic convergence.
@@ -57,7 +61,7 @@ contains
     logical, allocatable :: moves(:), was_active(:)
     real(wp) :: reference, energy, energy_reference, size_r
     integer :: k, fallbacks
-    logical :: look
+    logical :: look, settled
 
     allocate (report%records(0), dq(eq%system%map%neq), du(model%ndf, model%nn))
     report%fault = ''
@@ -77,6 +81,7 @@ contains
     reference = 0
     energy_reference = 0
     look = .false.
+    settled = .false.
     call note_active(eq, was_active)
 
     do k = 1, settings%most_iterations + 1
@@ -85,7 +90,7 @@ contains
         if (status /= ok) exit
         call measure(eq, reference, size_r)
         report%residual = ratio(size_r, reference)
-        if (report%residual <= settings%residual_tolerance) then
+        if (report%residual <= settings%residual_tolerance .or. settled) then
           call final_record(eq, report, was_active)
           return
         end if
@@ -144,7 +149,9 @@ contains
       else
         call eq%system%map%add_increment(dq, eq%u)
       end if
-      look = energy <= settings%energy_tolerance*energy_reference
+      settled = report%records(size(report%records))%changed == 0 .and. &
+        maxval(abs(dq)) <= rounding*maxval(abs(eq%u)) .and. report%residual <= settled_residual
+      look = settled .or. energy <= settings%energy_tolerance*energy_reference
     end do
     if (len(report%fault) == 0) report%fault = eq%fault
     if (len(report%fault) == 0) report%fault = status_text(status)

@@ -1,7 +1,8 @@
 module node_commands
   !! FEAP (header) and COORdinates.
   !!
-  !! Differences from FEAP: after its coordinates a node may have a weight (1 if none is given); counts of 0 are counted.
+  !! Differences from FEAP: after its coordinates a node may have a weight (1 if none is given);
+  !! counts of 0 are counted.
   use kinds, only: wp
   use messages, only: message_log, whole_text
   use deck_record, only: record
@@ -47,7 +48,8 @@ contains
       if (n(i) < 0) call rec%add_error(log, 'a count cannot be negative', '', i)
     end do
     if (n(4) /= 2 .and. n(4) /= 3) then
-      call rec%add_error(log, 'the space dimension ndm (4th number) is ' // whole_text(n(4)), 'It is 2 or 3')
+      call rec%add_error(log, 'the space dimension ndm (4th number) is ' // whole_text(n(4)), &
+        'It is 2 or 3')
       return
     end if
     draft%numnp = n(1)
@@ -60,7 +62,8 @@ contains
   end subroutine read_header
 
   subroutine read_coordinates(deck, model, draft, log)
-    !! Records `n ng x1 .. xndm [w]`: from node n to that of the next record, nodes n+ng, n+2ng, ... lie on a line.
+    !! Records `n ng x1 .. xndm [w]`: from node n to that of the next record, nodes n+ng, n+2ng, ...
+    !! lie on a line.
     type(deck_type), intent(inout) :: deck
     type(model_type), intent(in) :: model
     type(draft_type), intent(inout) :: draft
@@ -78,7 +81,8 @@ contains
       call next_line(deck, rec, log, more)
       if (.not. more) exit
       if (rec%is_damaged) cycle
-      call rec%check_count(2 + model%ndm, 3 + model%ndm, log, 'node, increment, coordinates, weight')
+      call rec%check_count(2 + model%ndm, 3 + model%ndm, log, &
+        'node, increment, coordinates, weight')
       call rec%integer(1, n, log, 'node number')
       call rec%integer(2, ng, log, 'increment', 0)
       x = 0
@@ -97,7 +101,8 @@ contains
       x_old = x
       w_old = w
     end do
-    if (ng_old /= 0) call log%add_error(draft%last_at, 'COORdinates', 'the last record has an increment', &
+    if (ng_old /= 0) call log%add_error(draft%last_at, 'COORdinates', &
+      'the last record has an increment', &
       'Nodes are generated up to the next record: give it, or write 0')
 
   contains
@@ -123,7 +128,8 @@ contains
       real(wp) :: part
 
       if (mod(n - n_old, ng_old) /= 0 .or. (n - n_old)/ng_old < 1) then
-        call rec%add_error(log, 'node ' // whole_text(n) // ' cannot be reached from ' // whole_text(n_old) // &
+        call rec%add_error(log, 'node ' // whole_text(n) // ' cannot be reached from ' // &
+          whole_text(n_old) // &
           ' in steps of ' // whole_text(ng_old), 'Correct the increment of the record before')
         return
       end if

@@ -9,7 +9,8 @@ module output_commands
   private
   public :: read_history, read_output, read_restart
 
-  character(12), parameter :: history_words(9) = [character(12) :: 'REACtion', 'DISPlacement', 'WORK', 'ELAStic', &
+  character(12), parameter :: history_words(9) = [character(12) :: 'REACtion', 'DISPlacement', &
+    'WORK', 'ELAStic', &
     'PENAlty', 'DISSipated', 'PENEtration', 'BALAnce', 'SET']
 
 contains
@@ -54,11 +55,14 @@ contains
         end select
       end do
       if ((r%reaction .or. r%displacement) .and. set_item == 0) call command%add_error(log, &
-        'reactions and displacements are those of a set', 'Write HISTory label SET=name REACtion DISPlacement')
+        'reactions and displacements are those of a set', &
+        'Write HISTory label SET=name REACtion DISPlacement')
       if (set_item > 0 .and. .not. (r%reaction .or. r%displacement)) call command%add_error(log, &
         'nothing is asked of the set', 'Add REACtion or DISPlacement')
-      if (command%count < 2) call command%add_error(log, 'nothing is asked for', known_names(history_words, 'words'))
-      if (is_taken(r%label)) call command%add_error(log, 'the label ' // quoted(r%label) // ' is taken', &
+      if (command%count < 2) call command%add_error(log, 'nothing is asked for', &
+        known_names(history_words, 'words'))
+      if (is_taken(r%label)) call command%add_error(log, 'the label ' // quoted(r%label) // &
+        ' is taken', &
         'Labels name the columns of history.csv')
     end associate
     draft%histories = [draft%histories, new]
@@ -100,7 +104,8 @@ contains
         select case (part)
         case ('ever')
           call command%integer(i, model%outputs%every, log, 'number of steps')
-          if (model%outputs%every < 1) call command%add_error(log, 'EVERy needs a positive number of steps', '', i)
+          if (model%outputs%every < 1) call command%add_error(log, &
+            'EVERy needs a positive number of steps', '', i)
         case ('step')
           call command%integer(i, step, log, 'step')
           model%outputs%steps = [model%outputs%steps, step]
@@ -126,6 +131,7 @@ contains
       'Write RESTart EVERy=20')
     call command%integer_option('every', model%outputs%restart_every, log)
     call command%check_options(['every'], log)
-    if (model%outputs%restart_every < 0) call command%add_error(log, 'a negative number of steps', '')
+    if (model%outputs%restart_every < 0) call command%add_error(log, 'a negative number of steps', &
+      '')
   end subroutine read_restart
 end module output_commands

@@ -1,6 +1,8 @@
 module patch_commands
-  !! PATCh: a NURBS patch from degrees, knots and control points, refined line by line, or the Lagrange mesh mapped on it.
-  !! Its elements are the element set NAME, its sides the surfaces NAME.left (s=0), .right (s=1), .bottom (t=0), .top
+  !! PATCh: a NURBS patch from degrees, knots and control points, refined line by line, or the
+  !! Lagrange mesh mapped on it.
+  !! Its elements are the element set NAME, its sides the surfaces NAME.left (s=0), .right (s=1),
+  !! .bottom (t=0), .top
   !! (t=1), .back (u=0), .front (u=1).
   use kinds, only: wp
   use status_codes, only: ok, status_text
@@ -23,7 +25,8 @@ module patch_commands
   private
   public :: read_patch
 
-  character(6), parameter :: side_names(6) = [character(6) :: 'left', 'right', 'bottom', 'top', 'back', 'front']
+  character(6), parameter :: side_names(6) = [character(6) :: 'left', 'right', 'bottom', 'top', &
+    'back', 'front']
   integer, parameter :: largest_degree = 20
 
   type :: patch_draft
@@ -104,7 +107,8 @@ contains
           'The order is DEGRee, KNOTs for each direction, POINts, then refinements')
         return
       else if (new%is_lagrange .and. any(word == ['elev', 'inse', 'subd', 'lagr'])) then
-        call rec%add_error(log, rec%word(1) // ' after LAGRange', 'Refine the patch before it becomes Lagrange elements')
+        call rec%add_error(log, rec%word(1) // ' after LAGRange', &
+          'Refine the patch before it becomes Lagrange elements')
         return
       end if
     end select
@@ -118,8 +122,10 @@ contains
     case ('lagr'); call read_lagrange(rec, new, log)
     case ('rota', 'tran', 'scal'); call move_points(rec, ndm, new%patch, log)
     case default
-      call rec%add_error(log, 'unknown line ' // quoted(rec%word(1)), known_names([character(9) :: 'DEGRee', &
-        'KNOTs', 'POINts', 'ELEVate', 'INSErt', 'SUBDivide', 'LAGRange', 'ROTAte', 'TRANslate', 'SCALe'], 'lines'))
+      call rec%add_error(log, 'unknown line ' // quoted(rec%word(1)), &
+        known_names([character(9) :: 'DEGRee', &
+        'KNOTs', 'POINts', 'ELEVate', 'INSErt', 'SUBDivide', 'LAGRange', 'ROTAte', 'TRANslate', &
+        'SCALe'], 'lines'))
     end select
   end subroutine carry_out
 
@@ -135,7 +141,8 @@ contains
     call rec%integers(2, p(1:new%dp), log, 'degrees')
     do d = 1, new%dp
       new%knots(d)%p = p(d)
-      if (p(d) < 1 .or. p(d) > largest_degree) call rec%add_error(log, 'the degree ' // whole_text(p(d)) // &
+      if (p(d) < 1 .or. p(d) > largest_degree) call rec%add_error(log, 'the degree ' // &
+        whole_text(p(d)) // &
         ' is not possible', 'Degrees are 1 to ' // whole_text(largest_degree), d + 1)
     end do
   end subroutine read_degrees
@@ -155,7 +162,8 @@ contains
     new%has_knots(d) = .true.
     do i = 2, size(u)
       if (u(i) >= u(i - 1)) cycle
-      call rec%add_error(log, 'the knots decrease from ' // write_number(u(i - 1)) // ' to ' // write_number(u(i)), &
+      call rec%add_error(log, 'the knots decrease from ' // write_number(u(i - 1)) // ' to ' // &
+        write_number(u(i)), &
         'A knot vector never decreases', i + 2)
       return
     end do
@@ -163,7 +171,8 @@ contains
       call rec%add_error(log, whole_text(size(u)) // ' knots are too few', 'Degree ' // &
         whole_text(new%knots(d)%p) // ' needs at least ' // whole_text(2*new%knots(d)%p + 2))
     else if (knot_status(new%knots(d)) /= ok) then
-      call rec%add_error(log, status_text(knot_status(new%knots(d))), 'Degree p allows p+1 equal knots')
+      call rec%add_error(log, status_text(knot_status(new%knots(d))), &
+        'Degree p allows p+1 equal knots')
     end if
   end subroutine read_knots
 
@@ -221,7 +230,8 @@ contains
       call rec%number(ndm + 1, cp(4, a), log, 'weight', 1.0_wp)
       if (log%error_count() > error_count) return
       if (cp(4, a) > 0) cycle
-      call rec%add_error(log, 'the weight of point ' // whole_text(a) // ' is ' // write_number(cp(4, a)), &
+      call rec%add_error(log, 'the weight of point ' // whole_text(a) // ' is ' // &
+        write_number(cp(4, a)), &
         'Weights must be positive')
       return
     end do
@@ -238,12 +248,14 @@ contains
     integer :: d, times, p(3)
 
     if (rec%key(2) == 'to') then
-      call rec%check_count(2 + new%dp, 2 + new%dp, log, 'ELEVate TO and a degree for each direction')
+      call rec%check_count(2 + new%dp, 2 + new%dp, log, &
+        'ELEVate TO and a degree for each direction')
       if (rec%count /= 2 + new%dp) return
       call rec%integers(3, p(1:new%dp), log, 'degrees')
       do d = 1, new%dp
         if (p(d) < new%patch%knots(d)%p .or. p(d) > largest_degree) then
-          call rec%add_error(log, 'direction ' // whole_text(d) // ' cannot be elevated from degree ' // &
+          call rec%add_error(log, 'direction ' // whole_text(d) // &
+            ' cannot be elevated from degree ' // &
             whole_text(new%patch%knots(d)%p) // ' to ' // whole_text(p(d)), &
             'The degree only rises, to ' // whole_text(largest_degree) // ' at most', 2 + d)
         else
@@ -256,7 +268,8 @@ contains
     if (d == 0) return
     call rec%integer(3, times, log, 'number of elevations', 1)
     if (times < 0 .or. new%patch%knots(d)%p + times > largest_degree) then
-      call rec%add_error(log, 'the degree ' // whole_text(new%patch%knots(d)%p) // ' cannot rise by ' // &
+      call rec%add_error(log, 'the degree ' // whole_text(new%patch%knots(d)%p) // &
+        ' cannot rise by ' // &
         whole_text(times), 'Degrees are 1 to ' // whole_text(largest_degree), 3)
       return
     end if
@@ -281,7 +294,8 @@ contains
   end subroutine read_insertion
 
   subroutine read_subdivision(rec, new, log)
-    !! SUBDivide dir n [RATIo=r | BOTH=r]: n elements in all; lengths of the last to the first, or of the middle to the
+    !! SUBDivide dir n [RATIo=r | BOTH=r]: n elements in all; lengths of the last to the first, or
+    !! of the middle to the
     !! ends. Breaks that exist are kept.
     type(record), intent(in) :: rec
     type(patch_draft), intent(inout) :: new
@@ -308,7 +322,8 @@ contains
       call rec%add_error(log, 'a ratio of element lengths must be positive', '')
       return
     else if (rec%has('ratio') .and. rec%has('both')) then
-      call rec%add_error(log, 'RATIo and BOTH exclude each other', 'RATIo grades to one end, BOTH to both')
+      call rec%add_error(log, 'RATIo and BOTH exclude each other', &
+        'RATIo grades to one end, BOTH to both')
       return
     else if (rec%has('ratio')) then
       allocate (ideal, source=graded_breaks(old(1), old(m), n, ratio))
@@ -318,7 +333,8 @@ contains
       allocate (ideal, source=uniform_breaks(old(1), old(m), n))
     end if
     call subdivide(new%patch, d, fitted_breaks(old, ideal), status)
-    if (status /= ok) call rec%add_error(log, 'some elements would be shorter than rounding', 'Grade less')
+    if (status /= ok) call rec%add_error(log, 'some elements would be shorter than rounding', &
+      'Grade less')
   end subroutine read_subdivision
 
   subroutine read_lagrange(rec, new, log)
@@ -328,12 +344,15 @@ contains
     type(message_log), intent(inout) :: log
     integer :: d
 
-    call rec%check_count(1 + new%dp, 2 + new%dp, log, 'LAGRange, a degree for each direction, LOBAtto')
+    call rec%check_count(1 + new%dp, 2 + new%dp, log, &
+      'LAGRange, a degree for each direction, LOBAtto')
     if (rec%count < 1 + new%dp) return
     call rec%integers(2, new%degree(1:new%dp), log, 'degrees')
     do d = 1, new%dp
-      if (new%degree(d) < 1 .or. new%degree(d) > largest_degree) call rec%add_error(log, 'the degree ' // &
-        whole_text(new%degree(d)) // ' is not possible', 'Degrees are 1 to ' // whole_text(largest_degree), d + 1)
+      if (new%degree(d) < 1 .or. new%degree(d) > largest_degree) call rec%add_error(log, &
+        'the degree ' // &
+        whole_text(new%degree(d)) // ' is not possible', 'Degrees are 1 to ' // &
+        whole_text(largest_degree), d + 1)
     end do
     if (rec%count == 2 + new%dp) then
       if (rec%key(2 + new%dp) == 'loba') then
@@ -399,7 +418,8 @@ contains
       do a = 1, size(x, 2)
         call draft%set_node(first_node + a - 1, x(1:model%ndm, a), 1.0_wp)
       end do
-      call lagrange_mesh_elements(new%patch%dp, new%degree, spans, new%nodes, [(a, a = first_node, draft%nn)], model%mesh)
+      call lagrange_mesh_elements(new%patch%dp, new%degree, spans, new%nodes, &
+        [(a, a = first_node, draft%nn)], model%mesh)
     else
       do a = 1, size(new%patch%cp, 2)
         call draft%set_node(first_node + a - 1, new%patch%cp(1:model%ndm, a), new%patch%cp(4, a))
@@ -420,11 +440,13 @@ contains
     integer, allocatable :: items(:)
     integer :: e, side
 
-    call add_set(model, name, place, set_elements, [(e, e = first, first + product(n) - 1)], [integer ::])
+    call add_set(model, name, place, set_elements, [(e, e = first, first + product(n) - 1)], &
+      [integer ::])
     do side = 1, 2*dp
       items = [integer ::]
       if (product(n) > 0) items = side_of_grid(n, side) + (first - 1)
-      call add_set(model, name // '.' // trim(side_names(side)), place, set_surface, items, spread(side, 1, size(items)))
+      call add_set(model, name // '.' // trim(side_names(side)), place, set_surface, items, &
+        spread(side, 1, size(items)))
     end do
   end subroutine add_sets
 end module patch_commands

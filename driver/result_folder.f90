@@ -148,7 +148,8 @@ contains
     if (index(name, '/') > 0 .or. name == '.' .or. name == '..') return
     do k = 1, size(endings)
       path = self%path//'/'//name//trim(endings(k))
-      if (.not. file_exists(path) .or. folder_exists(path)) cycle
+      if (.not. file_exists(path)) cycle
+      if (folder_exists(path)) cycle
       if (.not. remove_file(path)) then
         call self%complain('cannot remove '//path//': '//system_error())
         return

@@ -1,11 +1,13 @@
 module set_commands
   !! SET and TIE: read as they come, carried out at END, when all nodes and elements are there.
   use kinds, only: wp
-  use messages, only: message_log, deck_place, string, whole_text, quoted, name_hint, known_names, in_place
+  use messages, only: message_log, deck_place, string, whole_text, quoted, name_hint, known_names, &
+    in_place
   use expressions, only: value, number_value, word_value
   use deck_record, only: record
   use model_data, only: model_type, set_nodes, set_elements, set_surface
-  use model_sets, only: find_set, set_names, add_set, used_nodes, nodes_of_set, unite_sets, common_nodes, sorted_unique
+  use model_sets, only: find_set, set_names, add_set, used_nodes, nodes_of_set, unite_sets, &
+    common_nodes, sorted_unique
   use mesh_draft, only: draft_type, set_request, tie_request
   use data_lines, only: name_or_number
   use tie_nodes, only: coinciding_nodes, renumber_mesh
@@ -13,12 +15,14 @@ module set_commands
   private
   public :: read_set, read_tie, resolve_ties, resolve_sets
 
-  character(8), parameter :: set_kinds(6) = [character(8) :: 'NODEs', 'ELEMents', 'SURFace', 'UNION', 'BOX', 'CORNer']
+  character(8), parameter :: set_kinds(6) = [character(8) :: 'NODEs', 'ELEMents', 'SURFace', &
+    'UNION', 'BOX', 'CORNer']
 
 contains
 
   subroutine read_set(command, draft, log)
-    !! SET name NODEs n1 n2 ... | ELEMents e1 e2 ... | SURFace e1 side1 e2 side2 ... | UNION a b ... |
+    !! SET name NODEs n1 n2 ... | ELEMents e1 e2 ... | SURFace e1 side1 e2 side2 ... | UNION a b ...
+    !! |
     !! BOX x1 x2 y1 y2 [z1 z2] | CORNer a b ...
     type(record), intent(in) :: command
     type(draft_type), intent(inout) :: draft
@@ -52,7 +56,8 @@ contains
       end select
     end do
     if (new%keyword == 'surf' .and. mod(size(new%numbers), 2) /= 0) call command%add_error(log, &
-      'an element without side', 'Members are pairs: element side, sides are 1 to 6 (s=0, s=1, t=0, t=1, u=0, u=1)')
+      'an element without side', &
+      'Members are pairs: element side, sides are 1 to 6 (s=0, s=1, t=0, t=1, u=0, u=1)')
     draft%sets = [draft%sets, new]
   end subroutine read_set
 
@@ -76,11 +81,13 @@ contains
         name%s = v%word
         new%names = [new%names, name]
       else if (v%kind == number_value) then
-        call command%add_error(log, 'expected the name of a patch, found ' // quoted(command%word(i)), &
+        call command%add_error(log, 'expected the name of a patch, found ' // &
+          quoted(command%word(i)), &
           'Write TIE [tolerance] [patch patch ...]', i)
       end if
     end do
-    if (.not. (new%tol >= 0 .and. new%tol < 1)) call command%add_error(log, 'the tolerance is out of range', &
+    if (.not. (new%tol >= 0 .and. new%tol < 1)) call command%add_error(log, &
+      'the tolerance is out of range', &
       'It is relative to the size of the model, 1e-9 if not given', 2)
     draft%ties = [draft%ties, new]
   end subroutine read_tie
@@ -100,7 +107,8 @@ contains
     call used_nodes(model, used)
     size_of_model = 0
     do i = 1, model%ndm
-      size_of_model = max(size_of_model, maxval(model%x(i, :), mask=used) - minval(model%x(i, :), mask=used))
+      size_of_model = max(size_of_model, maxval(model%x(i, :), mask=used) - minval(model%x(i, :), &
+        mask=used))
     end do
     do i = 1, size(draft%ties)
       associate (tie => draft%ties(i))
@@ -116,7 +124,8 @@ contains
         do j = 1, size(tie%names)
           set = find_set(model, tie%names(j)%s)
           if (set == 0) then
-            call log%add_error(tie%at, 'TIE', 'there is no patch or set ' // quoted(tie%names(j)%s), &
+            call log%add_error(tie%at, 'TIE', 'there is no patch or set ' // &
+              quoted(tie%names(j)%s), &
               name_hint(tie%names(j)%s, set_names(model, 0), 'sets'))
             cycle
           end if
@@ -166,7 +175,9 @@ contains
     select case (request%keyword)
     case ('node')
       call check_range(request, nint(request%numbers), model%nn, 'node', log)
-      if (log%error_count() == error_count) items = sorted_unique(draft%tied_to(nint(request%numbers)), model%nn)
+      if (log%error_count() == error_count) then
+        items = sorted_unique(draft%tied_to(nint(request%numbers)), model%nn)
+      end if
     case ('elem')
       kind = set_elements
       call check_range(request, nint(request%numbers), model%mesh%ne, 'element', log)
@@ -194,8 +205,10 @@ contains
       items = [integer ::]
       sides = [integer ::]
     end if
-    if (size(items) == 0 .and. .not. draft%has_lost_sets) call log%add_error(request%at, 'SET', 'the set ' // &
-      quoted(request%name) // ' is empty', trim(merge('These sets share no node', 'Nothing lies in the box ', &
+    if (size(items) == 0 .and. .not. draft%has_lost_sets) call log%add_error(request%at, 'SET', &
+      'the set ' // &
+      quoted(request%name) // ' is empty', trim(merge('These sets share no node', &
+      'Nothing lies in the box ', &
       request%keyword == 'corn')))
     call add_set(model, request%name, place, kind, items, sides)
   end subroutine resolve_set
@@ -209,7 +222,8 @@ contains
 
     do i = 1, size(numbers)
       if (numbers(i) >= 1 .and. numbers(i) <= most) cycle
-      call log%add_error(request%at, 'SET', 'there is no ' // what // ' ' // whole_text(numbers(i)), &
+      call log%add_error(request%at, 'SET', 'there is no ' // what // ' ' // &
+        whole_text(numbers(i)), &
         'Numbers are 1 to ' // whole_text(most))
       return
     end do
@@ -225,7 +239,8 @@ contains
     do i = 1, min(size(items), size(sides))
       if (sides(i) >= 1 .and. sides(i) <= 2*model%mesh%dp(items(i))) cycle
       if (sides(i) == 0 .and. model%mesh%dp(items(i)) == model%ndm - 1) cycle
-      call log%add_error(request%at, 'SET', 'element ' // whole_text(items(i)) // ' has no side ' // &
+      call log%add_error(request%at, 'SET', 'element ' // whole_text(items(i)) // &
+        ' has no side ' // &
         whole_text(sides(i)), 'Its sides are 1 to ' // whole_text(2*model%mesh%dp(items(i))))
       return
     end do
@@ -242,8 +257,10 @@ contains
     integer :: a, i
 
     if (size(request%numbers) /= 2*model%ndm) then
-      call log%add_error(request%at, 'SET', 'a box has ' // whole_text(2*model%ndm) // ' bounds, found ' // &
-        whole_text(size(request%numbers)), 'Write SET name BOX x1 x2 y1 y2' // trim(merge('      ', ' z1 z2', &
+      call log%add_error(request%at, 'SET', 'a box has ' // whole_text(2*model%ndm) // &
+        ' bounds, found ' // &
+        whole_text(size(request%numbers)), 'Write SET name BOX x1 x2 y1 y2' // &
+        trim(merge('      ', ' z1 z2', &
         model%ndm == 2)))
       return
     end if
@@ -269,7 +286,8 @@ contains
     do i = 1, size(indices)
       indices(i) = find_set(model, request%names(i)%s)
       if (indices(i) == 0) call log%add_error(request%at, 'SET', 'there is no set ' // &
-        quoted(request%names(i)%s) // ' before this line', name_hint(request%names(i)%s, set_names(model, 0), 'sets'))
+        quoted(request%names(i)%s) // ' before this line', name_hint(request%names(i)%s, &
+        set_names(model, 0), 'sets'))
     end do
   end subroutine indices_of_names
 end module set_commands

@@ -1,5 +1,6 @@
 module tie_nodes
-  !! Nodes at the same place with the same weight become one (TIE). Candidates are found by sorting along a direction
+  !! Nodes at the same place with the same weight become one (TIE). Candidates are found by sorting
+  !! along a direction
   !! that no mesh is aligned with, so that only coinciding points are neighbours in that order.
   use kinds, only: wp
   use extraction_set, only: extraction_set_type
@@ -15,10 +16,10 @@ contains
   subroutine coinciding_nodes(x, w, group, tol, map, different_weight)
     real(wp), intent(in) :: x(:, :)             !! control points (ndm,nn) [length]
     real(wp), intent(in) :: w(:)                !! weights (nn)
-    integer, intent(in) :: group(:)             !! only nodes of one group are tied (nn); 0: never tied
+    integer, intent(in) :: group(:)             !! nodes of one group may be tied (nn); 0: never
     real(wp), intent(in) :: tol                 !! of places [length]
-    integer, intent(out) :: map(:)              !! the lowest node that each is tied to, itself if to none (nn)
-    integer, intent(out) :: different_weight    !! pairs at the same place that differ in weight (not tied)
+    integer, intent(out) :: map(:)              !! lowest node that each is tied to, or itself (nn)
+    integer, intent(out) :: different_weight    !! pairs that differ in weight, not tied
     real(wp), parameter :: weight_tolerance = 1e-9_wp  !! relative
     real(wp) :: s(size(w)), reach
     integer, allocatable :: order(:)
@@ -73,7 +74,8 @@ contains
   end function root
 
   subroutine renumber_mesh(mesh, map)
-    !! Replace nodes by those they are tied to. Functions of one element that now share a node become one, their sum:
+    !! Replace nodes by those they are tied to. Functions of one element that now share a node
+    !! become one, their sum:
     !! as their weights agree, w N_a + w N_b = w (N_a + N_b).
     type(extraction_set_type), intent(inout), target :: mesh
     integer, intent(in) :: map(:)                   !! new node of each node (nn)

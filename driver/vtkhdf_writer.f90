@@ -151,9 +151,10 @@ contains
     type(hdf5_store_type) :: store
 
     vtkhdf_is_sound = .false.
-    if (file_exists(path//'.open') .or. .not. file_exists(path)) return
+    if (file_exists(path//'.open')) return
+    if (.not. file_exists(path)) return
     call store%open_to_read(path)
-    if (.not. store%failed) vtkhdf_is_sound = store%has(steps) .and. store%has('/bezel/mesh')
+    if (store%has(steps)) vtkhdf_is_sound = store%has('/bezel/mesh')
     call store%close()
   end function vtkhdf_is_sound
 

@@ -10,6 +10,7 @@ module gpts_element
   use surface_frame, only: tangent_frame_at
   use interface_law, only: gap_law, gap_response, contact_law
   use gpts_kernel, only: gpts_point
+  use gpts_corner, only: gpts_corner_point
   implicit none (type, external)
   private
   public :: gpts_element_type
@@ -90,6 +91,7 @@ contains
     real(wp) :: opening
     type(gap_response) :: response
     integer :: a, dp, ns
+    logical :: want_tangent
 
     dp = self%ndm - 1
     if (task == task_prepare) then
@@ -101,12 +103,18 @@ contains
     end do
     ns = geo%nes
     associate (m => geo%master)
-      call shape_functions(m%degree(1:dp), m%we, m%ce, m%xi(1:dp), 2, shp, dshp, d2shp, status)
+      want_tangent = task == task_tangent
+      call shape_functions(m%degree(1:dp), m%we, m%ce, m%xi(1:dp), merge(2, 1, want_tangent), shp, dshp, d2shp, status)
       if (status /= ok) return
       opening = 0
       if (size(state%hist_n) > 0) opening = state%hist_n(1)
-      call gpts_point(geo%table(2:ns + 1), x(:, 1:ns), shp, dshp, d2shp, x(:, ns + 1:), m%side, self%law, opening, &
-                      geo%table(1), task == task_tangent, response, fe, ke, status)
+      if (any(m%held(1:dp))) then
+        call gpts_corner_point(geo%table(2:ns + 1), x(:, 1:ns), shp, dshp, d2shp, x(:, ns + 1:), m%side, m%held(1:dp), &
+                               self%law, opening, geo%table(1), want_tangent, response, fe, ke, status)
+      else
+        call gpts_point(geo%table(2:ns + 1), x(:, 1:ns), shp, dshp, d2shp, x(:, ns + 1:), m%side, self%law, opening, &
+                        geo%table(1), want_tangent, response, fe, ke, status)
+      end if
     end associate
     if (status /= ok) return
     if (size(state%hist) > 0) state%hist(1) = response%opening

@@ -29,6 +29,7 @@ module user_element
     integer :: nen = 0                                     !! functions on the facet (0: unpaired)
     integer :: degree(2) = 0                               !! Bernstein degrees
     real(wp) :: xi(2) = 0                                  !! projection of the slave point, in [0,1]
+    logical :: held(2) = .false.                           !! xi rests on a kink of the surface in this direction
     real(wp) :: side = 1                                   !! +1 or -1: the outward normal is side*n
     real(wp), pointer, contiguous :: we(:) => null()       !! weights (nen)
     real(wp), pointer, contiguous :: ce(:, :) => null()    !! extraction operator (nen,nb)

@@ -1,5 +1,6 @@
 program link_alone
-  !! Holds all of shapes and elements and nothing else; the check beside it looks at what that needs.
+  !! Holds all of shapes and elements and nothing else; the check beside it looks at what that
+  !! needs.
   use kinds, only: wp
   use status_codes, only: ok, status_text
   use bernstein, only: bernstein_1d

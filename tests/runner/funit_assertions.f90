@@ -1,18 +1,19 @@
 module funit_assertions
-  !! The assertions. Each throws at most one failure, which names the first element that differs. Reals and
-  !! integers have rank 0 to 2; both sides have one shape, or the first one is a scalar.
+  !! The assertions. Each throws at most one failure, which names the first element that differs.
+  !! Reals and integers have rank 0 to 2; both sides have one shape, or the first one is a scalar.
   use, intrinsic :: iso_fortran_env, only: real64, int32, int64
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_is_finite
   use funit_exceptions, only: SourceLocation, throw, catch
   implicit none (type, external)
   private
-  public :: assertEqual, assertNotEqual, assertRelativelyEqual, assertLessThan, assertLessThanOrEqual, &
-    assertGreaterThan, assertGreaterThanOrEqual, assertTrue, assertFalse, assertAll, assertAny, assertIsNaN, &
-    assertIsFinite, assertSameShape, assertFail, assertExceptionRaised
+  public :: assertEqual, assertNotEqual, assertRelativelyEqual, assertLessThan, &
+    assertLessThanOrEqual, assertGreaterThan, assertGreaterThanOrEqual, assertTrue, assertFalse, &
+    assertAll, assertAny, assertIsNaN, assertIsFinite, assertSameShape, assertFail, &
+    assertExceptionRaised
 
   interface assertEqual
-    module procedure equal_real, equal_real_exactly, equal_int32, equal_int64, equal_logical, equal_string, &
-      equal_strings
+    module procedure equal_real, equal_real_exactly, equal_int32, equal_int64, equal_logical, &
+      equal_string, equal_strings
   end interface assertEqual
   interface assertNotEqual
     module procedure not_equal_real, not_equal_int32, not_equal_int64
@@ -115,7 +116,8 @@ contains
     real(real64), intent(in) :: x
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
-    if (.not. ieee_is_finite(x)) call fail('expected a finite number, found ' // real_text(x), message, location)
+    if (.not. ieee_is_finite(x)) call fail('expected a finite number, found ' // real_text(x), &
+      message, location)
   end subroutine assertIsFinite
 
   ! Integers.
@@ -124,88 +126,96 @@ contains
     integer(int32), intent(in) :: expected(..), actual(..)
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
-    call compare_integers(equal, flat_int32(expected), shape(expected), flat_int32(actual), shape(actual), message, &
-      location)
+    call compare_integers(equal, flat_int32(expected), shape(expected), flat_int32(actual), &
+      shape(actual), message, location)
   end subroutine equal_int32
 
   subroutine equal_int64(expected, actual, message, location)
     integer(int64), intent(in) :: expected(..), actual(..)
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
-    call compare_integers(equal, flat_int64(expected), shape(expected), flat_int64(actual), shape(actual), message, &
-      location)
+    call compare_integers(equal, flat_int64(expected), shape(expected), flat_int64(actual), &
+      shape(actual), message, location)
   end subroutine equal_int64
 
   subroutine not_equal_int32(expected, actual, message, location)
     integer(int32), intent(in) :: expected(..), actual(..)
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
-    call compare_integers(different, flat_int32(expected), shape(expected), flat_int32(actual), shape(actual), message, &
-      location)
+    call compare_integers(different, flat_int32(expected), shape(expected), flat_int32(actual), &
+      shape(actual), message, location)
   end subroutine not_equal_int32
 
   subroutine not_equal_int64(expected, actual, message, location)
     integer(int64), intent(in) :: expected(..), actual(..)
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
-    call compare_integers(different, flat_int64(expected), shape(expected), flat_int64(actual), shape(actual), message, &
-      location)
+    call compare_integers(different, flat_int64(expected), shape(expected), flat_int64(actual), &
+      shape(actual), message, location)
   end subroutine not_equal_int64
 
   subroutine less_int32(lhs, rhs, message, location)
     integer(int32), intent(in) :: lhs(..), rhs(..)
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
-    call compare_integers(less, flat_int32(lhs), shape(lhs), flat_int32(rhs), shape(rhs), message, location)
+    call compare_integers(less, flat_int32(lhs), shape(lhs), flat_int32(rhs), shape(rhs), &
+      message, location)
   end subroutine less_int32
 
   subroutine less_int64(lhs, rhs, message, location)
     integer(int64), intent(in) :: lhs(..), rhs(..)
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
-    call compare_integers(less, flat_int64(lhs), shape(lhs), flat_int64(rhs), shape(rhs), message, location)
+    call compare_integers(less, flat_int64(lhs), shape(lhs), flat_int64(rhs), shape(rhs), &
+      message, location)
   end subroutine less_int64
 
   subroutine less_or_equal_int32(lhs, rhs, message, location)
     integer(int32), intent(in) :: lhs(..), rhs(..)
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
-    call compare_integers(less_or_equal, flat_int32(lhs), shape(lhs), flat_int32(rhs), shape(rhs), message, location)
+    call compare_integers(less_or_equal, flat_int32(lhs), shape(lhs), flat_int32(rhs), &
+      shape(rhs), message, location)
   end subroutine less_or_equal_int32
 
   subroutine less_or_equal_int64(lhs, rhs, message, location)
     integer(int64), intent(in) :: lhs(..), rhs(..)
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
-    call compare_integers(less_or_equal, flat_int64(lhs), shape(lhs), flat_int64(rhs), shape(rhs), message, location)
+    call compare_integers(less_or_equal, flat_int64(lhs), shape(lhs), flat_int64(rhs), &
+      shape(rhs), message, location)
   end subroutine less_or_equal_int64
 
   subroutine greater_int32(lhs, rhs, message, location)
     integer(int32), intent(in) :: lhs(..), rhs(..)
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
-    call compare_integers(greater, flat_int32(lhs), shape(lhs), flat_int32(rhs), shape(rhs), message, location)
+    call compare_integers(greater, flat_int32(lhs), shape(lhs), flat_int32(rhs), shape(rhs), &
+      message, location)
   end subroutine greater_int32
 
   subroutine greater_int64(lhs, rhs, message, location)
     integer(int64), intent(in) :: lhs(..), rhs(..)
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
-    call compare_integers(greater, flat_int64(lhs), shape(lhs), flat_int64(rhs), shape(rhs), message, location)
+    call compare_integers(greater, flat_int64(lhs), shape(lhs), flat_int64(rhs), shape(rhs), &
+      message, location)
   end subroutine greater_int64
 
   subroutine greater_or_equal_int32(lhs, rhs, message, location)
     integer(int32), intent(in) :: lhs(..), rhs(..)
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
-    call compare_integers(greater_or_equal, flat_int32(lhs), shape(lhs), flat_int32(rhs), shape(rhs), message, location)
+    call compare_integers(greater_or_equal, flat_int32(lhs), shape(lhs), flat_int32(rhs), &
+      shape(rhs), message, location)
   end subroutine greater_or_equal_int32
 
   subroutine greater_or_equal_int64(lhs, rhs, message, location)
     integer(int64), intent(in) :: lhs(..), rhs(..)
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
-    call compare_integers(greater_or_equal, flat_int64(lhs), shape(lhs), flat_int64(rhs), shape(rhs), message, location)
+    call compare_integers(greater_or_equal, flat_int64(lhs), shape(lhs), flat_int64(rhs), &
+      shape(rhs), message, location)
   end subroutine greater_or_equal_int64
 
   subroutine assertSameShape(expected, actual, message, location)
@@ -216,7 +226,8 @@ contains
     if (size(expected) == size(actual)) then
       if (all(expected == actual)) return
     end if
-    call fail('expected shape ' // list_text(expected) // ', found ' // list_text(actual), message, location)
+    call fail('expected shape ' // list_text(expected) // ', found ' // list_text(actual), &
+      message, location)
   end subroutine assertSameShape
 
   ! Logicals, strings, exceptions.
@@ -225,8 +236,8 @@ contains
     logical, intent(in) :: expected(..), actual(..)
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
-    call compare_integers(equal, flat_logical(expected), shape(expected), flat_logical(actual), shape(actual), &
-      message, location, as_logical=.true.)
+    call compare_integers(equal, flat_logical(expected), shape(expected), flat_logical(actual), &
+      shape(actual), message, location, as_logical=.true.)
   end subroutine equal_logical
 
   subroutine true_scalar(condition, message, location)
@@ -241,7 +252,8 @@ contains
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
     if (.not. all(conditions)) then
-      call fail('expected true, found false at ' // list_text(findloc(conditions, .false.)), message, location)
+      call fail('expected true, found false at ' // list_text(findloc(conditions, .false.)), &
+        message, location)
     end if
   end subroutine true_array
 
@@ -257,7 +269,8 @@ contains
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
     if (any(conditions)) then
-      call fail('expected false, found true at ' // list_text(findloc(conditions, .true.)), message, location)
+      call fail('expected false, found true at ' // list_text(findloc(conditions, .true.)), &
+        message, location)
     end if
   end subroutine false_array
 
@@ -282,7 +295,8 @@ contains
     type(SourceLocation), intent(in), optional :: location
 
     if (trim(adjustl(expected)) == trim(adjustl(actual))) return
-    call fail('expected "' // trim(expected) // '", found "' // trim(actual) // '"', message, location)
+    call fail('expected "' // trim(expected) // '", found "' // trim(actual) // '"', message, &
+      location)
   end subroutine equal_string
 
   subroutine equal_strings(expected, actual, message, location)
@@ -292,14 +306,14 @@ contains
     integer :: i
 
     if (size(expected) /= size(actual)) then
-      call fail('expected shape ' // list_text(shape(expected)) // ', found ' // list_text(shape(actual)), message, &
-        location)
+      call fail('expected shape ' // list_text(shape(expected)) // ', found ' // &
+        list_text(shape(actual)), message, location)
       return
     end if
     do i = 1, size(expected)
       if (trim(adjustl(expected(i))) == trim(adjustl(actual(i)))) cycle
-      call fail('expected "' // trim(expected(i)) // '", found "' // trim(actual(i)) // '" at ' // list_text([i]), &
-        message, location)
+      call fail('expected "' // trim(expected(i)) // '", found "' // trim(actual(i)) // &
+        '" at ' // list_text([i]), message, location)
       return
     end do
   end subroutine equal_strings
@@ -318,7 +332,8 @@ contains
   subroutine raised_message(message, location)
     character(*), intent(in) :: message
     type(SourceLocation), intent(in), optional :: location
-    if (.not. catch(message)) call throw('expected the exception "' // message // '", found none', location)
+    if (.not. catch(message)) call throw('expected the exception "' // message // &
+      '", found none', location)
   end subroutine raised_message
 
   ! The comparisons behind them.
@@ -347,7 +362,8 @@ contains
         text = 'expected ' // real_text(l(i)) // ', found ' // real_text(r(i))
         if (ieee_is_finite(l(i)) .and. ieee_is_finite(r(i))) then
           text = text // ', difference ' // real_text(r(i) - l(i)) // ' (' // &
-            trim(merge('relative tolerance', 'tolerance         ', relation == relatively_equal)) // ' ' // &
+            trim(merge('relative tolerance', 'tolerance         ', &
+            relation == relatively_equal)) // ' ' // &
             real_text(tolerance) // ')'
         end if
       end if
@@ -358,7 +374,8 @@ contains
   contains
 
     function holds(a, b) result(yes)
-      !! A NaN stands in no relation, and no comparison sees one, so that such tests survive trapping.
+      !! A NaN stands in no relation, and no comparison sees one, so that such tests survive
+      !! trapping.
       real(real64), intent(in) :: a, b
       logical :: yes
 
@@ -379,7 +396,8 @@ contains
     end function holds
   end subroutine compare_reals
 
-  subroutine compare_integers(relation, lhs, lhs_shape, rhs, rhs_shape, message, location, as_logical)
+  subroutine compare_integers(relation, lhs, lhs_shape, rhs, rhs_shape, message, location, &
+    as_logical)
     character(*), intent(in) :: relation
     integer(int64), intent(in) :: lhs(:), rhs(:)
     integer, intent(in) :: lhs_shape(:), rhs_shape(:)
@@ -410,8 +428,8 @@ contains
       else if (present(as_logical)) then
         text = merge('expected true, found false', 'expected false, found true', l(i) == 1)
       else
-        text = 'expected ' // integer_text(l(i)) // ', found ' // integer_text(rhs(i)) // ', difference ' // &
-          integer_text(rhs(i) - l(i))
+        text = 'expected ' // integer_text(l(i)) // ', found ' // integer_text(rhs(i)) // &
+          ', difference ' // integer_text(rhs(i) - l(i))
       end if
       call fail(text // place(i, rhs_shape), message, location)
       return
@@ -419,7 +437,7 @@ contains
   end subroutine compare_integers
 
   function conformable(lhs, rhs, message, location) result(yes)
-    !! Throws if the shapes differ and the first is not that of a scalar, or if the rank is above two.
+    !! Throws if the shapes differ and the first is not a scalar's, or if the rank is above two.
     integer, intent(in) :: lhs(:), rhs(:)
     character(*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
@@ -432,7 +450,8 @@ contains
     end if
     yes = size(lhs) == 0
     if (.not. yes .and. size(lhs) == size(rhs)) yes = all(lhs == rhs)
-    if (.not. yes) call fail('expected shape ' // list_text(lhs) // ', found ' // list_text(rhs), message, location)
+    if (.not. yes) call fail('expected shape ' // list_text(lhs) // ', found ' // &
+      list_text(rhs), message, location)
   end function conformable
 
   subroutine fail(what, message, location)
@@ -503,7 +522,8 @@ contains
     select case (size(extents))
     case (0);     text = ''
     case (1);     text = ' at ' // list_text([i])
-    case default; text = ' at ' // list_text([1 + modulo(i - 1, extents(1)), 1 + (i - 1) / extents(1)])
+    case default; text = ' at ' // list_text([1 + modulo(i - 1, extents(1)), &
+      1 + (i - 1) / extents(1)])
     end select
   end function place
 

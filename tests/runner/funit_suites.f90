@@ -122,21 +122,26 @@ contains
     class(suite_runner), intent(inout) :: runner
     integer(int64) :: now, rate
     character(200) :: text
+    character(24) :: disabled
 
     call system_clock(now, rate)
     write (text, '(a,f12.3,a)') 'Time: ', real(now - runner%started) / real(rate), ' seconds'
     call report(trim(text))
-    if (runner%run_count + runner%disabled_count == 0) call refuse('no test has "' // runner%filter // '" in its name')
+    if (runner%run_count + runner%disabled_count == 0) then
+      call refuse('no test has "' // runner%filter // '" in its name')
+    end if
     if (runner%failed_count > 0) then
-      write (text, '(*(a,i0))') 'Tests run: ', runner%run_count, ', Failures: ', runner%failed_count, &
-        ', Errors: ', 0, ', Disabled: ', runner%disabled_count
+      write (text, '(*(a,i0))') 'Tests run: ', runner%run_count, ', Failures: ', &
+        runner%failed_count, ', Errors: ', 0, ', Disabled: ', runner%disabled_count
       call report('FAILURES!!!')
       call report(trim(text))
       stop 2, quiet = .true.
     end if
-    write (text, '(a,i0,a)') ' (', runner%run_count, merge(' test ', ' tests', runner%run_count == 1)
-    if (runner%disabled_count > 0) write (text, '(a,i0,a)') trim(text) // ', ', runner%disabled_count, ' disabled'
     call report(' OK')
+    write (text, '(a,i0,a)') ' (', runner%run_count, ' test'
+    if (runner%run_count /= 1) text = trim(text) // 's'
+    write (disabled, '(a,i0,a)') ', ', runner%disabled_count, ' disabled'
+    if (runner%disabled_count > 0) text = trim(text) // disabled
     call report(trim(text) // ')')
   end subroutine close
 

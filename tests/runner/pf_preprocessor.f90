@@ -1,15 +1,17 @@
 program pf_preprocessor
-  !! pf_preprocessor IN.pf OUT.F90: turns a test file into Fortran, for the module funit beside it. It accepts a strict
-  !! subset of pFUnit 4: an unknown or malformed directive is an error with file and line, all of a file at once.
+  !! pf_preprocessor IN.pf OUT.F90: turns a test file into Fortran, for the module funit beside it.
+  !! It accepts a strict subset of pFUnit 4: an unknown or malformed directive is an error with file
+  !! and line, all of a file at once.
   !!
-  !! A test file holds one module of its own name. Every `@assert...` becomes a call and a return if anything failed;
-  !! `@test` (with `@disable` or not), `@before`, `@after` mark the next subroutine. Behind the module follows the
-  !! function `<name>_suite` that collects the tests.
+  !! A test file holds one module of its own name. Every `@assert...` becomes a call and a return if
+  !! anything failed; `@test` (also with `@disable`), `@before`, `@after` mark the next subroutine.
+  !! Behind the module follows the function `<name>_suite` that collects the tests.
   use, intrinsic :: iso_fortran_env, only: error_unit, iostat_end
   implicit none (type, external)
 
   integer, parameter :: longest_directive = 120, longest_name = 44
-  integer, parameter :: nothing = 0, a_test = 1, a_before = 2, an_after = 3  !! what the next subroutine will be
+  !! What the next subroutine will be.
+  integer, parameter :: nothing = 0, a_test = 1, a_before = 2, an_after = 3
   character(*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyz', digits = '0123456789'
   character(*), parameter :: tab = achar(9)
 
@@ -21,9 +23,9 @@ program pf_preprocessor
     assertion('equal', 2, 4), assertion('notequal', 2, 3), assertion('relativelyequal', 3, 4), &
     assertion('lessthan', 2, 3), assertion('lessthanorequal', 2, 3), &
     assertion('greaterthan', 2, 3), assertion('greaterthanorequal', 2, 3), &
-    assertion('true', 1, 2), assertion('false', 1, 2), assertion('all', 1, 2), assertion('any', 1, 2), &
-    assertion('isnan', 1, 2), assertion('isfinite', 1, 2), assertion('sameshape', 2, 3), assertion('fail', 1, 1), &
-    assertion('exceptionraised', 0, 1)]
+    assertion('true', 1, 2), assertion('false', 1, 2), assertion('all', 1, 2), &
+    assertion('any', 1, 2), assertion('isnan', 1, 2), assertion('isfinite', 1, 2), &
+    assertion('sameshape', 2, 3), assertion('fail', 1, 1), assertion('exceptionraised', 0, 1)]
 
   type :: test
     character(longest_name) :: name
@@ -91,7 +93,8 @@ contains
       if (bare_at(line)) call refuse('"@" within a line; a directive stands alone on its line')
       if (index(text, 'module ') == 1) then
         word = squeeze(text(8:))
-        if (index(word, 'procedure') /= 1 .and. index(word, 'subroutine') /= 1 .and. index(word, 'function') /= 1) then
+        if (index(word, 'procedure') /= 1 .and. index(word, 'subroutine') /= 1 .and. index(word, &
+          'function') /= 1) then
           call take_module(word)
         end if
       end if
@@ -101,7 +104,8 @@ contains
 
   subroutine translate(line, text)
     !! One directive.
-    character(*), intent(in) :: line, text  !! as it stands; without blanks around it and in lower case
+    character(*), intent(in) :: line  !! as it stands
+    character(*), intent(in) :: text  !! without blanks around it, in lower case
 
     if (len_trim(line) > longest_directive) call refuse('a directive has at most 120 columns')
     if (module_name == '') call refuse('a directive before the module statement')
@@ -153,7 +157,7 @@ contains
     rest = squeeze(rest(n + 1:))
     if (index(rest, '()') == 1) rest = squeeze(rest(3:))
     if (n == 0 .or. (rest /= '' .and. index(rest, '!') /= 1)) then
-      call refuse('expected "subroutine NAME" without prefix and arguments after the directive above')
+      call refuse('expected "subroutine NAME", no prefix, no argument, after the directive above')
       return
     end if
     select case (what)
@@ -176,7 +180,8 @@ contains
 
     if (module_name /= '') call refuse('a second module in the file')
     module_name = name
-    if (name /= stem()) call refuse('expected "module ' // stem() // '", the name of the file, alone on its line')
+    if (name /= stem()) call refuse('expected "module ' // stem() // &
+      '", the name of the file, alone on its line')
   end subroutine take_module
 
   subroutine translate_assertion(text)
@@ -207,7 +212,8 @@ contains
     end if
     write (number, '(i0)') line_number
     call write_line('#line ' // trim(number) // ' "' // in_name // '"')
-    call write_line('  call ' // name // arguments(:len(arguments) - 1) // trim(merge(', &', '  &', count > 0)))
+    call write_line('  call ' // name // arguments(:len(arguments) - 1) // trim(merge(', &', &
+      '  &', count > 0)))
     call write_line('    & location=SourceLocation(''' // base // ''', ' // trim(number) // '))')
     call write_line('  if (anyExceptions()) return')
     write (number, '(i0)') line_number + 1
@@ -289,7 +295,8 @@ contains
     if (before /= '') call write_line('  suite%before => ' // before)
     if (after /= '') call write_line('  suite%after => ' // after)
     do i = 1, size(tests)
-      call write_line('  call suite%add(''' // trim(tests(i)%name) // ''', ' // trim(tests(i)%name) // ', ' // &
+      call write_line('  call suite%add(''' // trim(tests(i)%name) // ''', ' // &
+        trim(tests(i)%name) // ', ' // &
         trim(merge('.true. ', '.false.', tests(i)%disabled)) // ')')
     end do
     call write_line('end function ' // module_name // '_suite')

@@ -38,6 +38,13 @@ class Run:
         return sum(self.history["iterations"])
 
 
+def check(deck, **parameters):
+    """What --check prints of a deck."""
+    arguments = [f"{name}={value}" for name, value in parameters.items()]
+    return subprocess.run([build / "bezel", root / deck, *arguments, "--check"], capture_output=True, text=True,
+                          check=True).stdout
+
+
 def history(path):
     """Columns of a history.csv as lists of floats."""
     with open(path) as file:

@@ -23,7 +23,7 @@ program vtk_samples
 contains
 
   subroutine write_sample(path, ndm, degree)
-    !! Angle along the first direction, radius 1..2 along the second, height 0..3 along the third. Two elements stand
+    !! Angle along the first direction (clockwise), radius 1..2 along the second, height 0..3 along the third. Two elements stand
     !! one beside the other, the second one with its functions in reverse.
     character(*), intent(in) :: path
     integer, intent(in) :: ndm, degree(3)
@@ -51,7 +51,8 @@ contains
           do i = 0, degree(1)
             a = a + 1
             radius = 1 + real(j, wp)/degree(2)
-            model%x(:2, a) = radius*[merge(1, 0, i < 2), merge(1, 0, i > 0)]*[1 - 2*e, 1]
+            model%x(:2, a) = radius*[merge(1, 0, i > 0), merge(1, 0, i < 2)]
+            if (e == 1) model%x(:2, a) = [-model%x(2, a), model%x(1, a)]
             if (ndm == 3) model%x(3, a) = 3*real(k, wp)/degree(3)
             model%w(a) = merge(sqrt(0.5_wp), 1.0_wp, i == 1)
           end do
