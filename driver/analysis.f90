@@ -140,8 +140,9 @@ contains
         case (do_print)
           run%print_iterations = command%count == 1
         case (do_line_search)
-          run%settings%line_search = command%value(1) > 0
-          run%settings%line_search_ratio = command%value(1)
+          ! LINEsearch: always; LINEsearch,,0: never; without the command: only where Newton struggles
+          run%settings%line_search_from = merge(2, huge(1), command%value(1) > 0)
+          if (command%value(1) > 0) run%settings%line_search_ratio = command%value(1)
         case (do_cutback)
           run%control%most_halvings = command%count
         case (do_predictor)

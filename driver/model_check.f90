@@ -157,7 +157,7 @@ contains
 
     dp = model%mesh%dp(e)
     nen = model%mesh%nen(e)
-    ix = model%mesh%nodes(model%mesh%node_ptr(e):model%mesh%node_ptr(e + 1) - 1)
+    allocate (ix, source=model%mesh%nodes(model%mesh%node_ptr(e):model%mesh%node_ptr(e + 1) - 1))
     op = model%mesh%operator_of(e)
     ce = reshape(model%mesh%coef(model%mesh%op_ptr(op):model%mesh%op_ptr(op + 1) - 1), &
       [nen, model%mesh%nb(e)])

@@ -107,7 +107,7 @@ contains
 
     dp = model%mesh%dp(e)
     nen = model%mesh%nen(e)
-    ix = model%mesh%nodes(model%mesh%node_ptr(e):model%mesh%node_ptr(e + 1) - 1)
+    allocate (ix, source=model%mesh%nodes(model%mesh%node_ptr(e):model%mesh%node_ptr(e + 1) - 1))
     op = model%mesh%operator_of(e)
     ce = reshape(model%mesh%coef(model%mesh%op_ptr(op):model%mesh%op_ptr(op + 1) - 1), &
       [nen, model%mesh%nb(e)])
@@ -135,12 +135,10 @@ contains
     !! The different degrees, with the number of their elements.
     type(model_type), intent(in) :: model
     character(:), allocatable :: text
-    integer, allocatable :: code(:)
+    integer :: code(model%mesh%ne)
     integer :: e, i, first
 
-    code = [(10000*model%mesh%degree(1, e) + 100*model%mesh%degree(2, e) + model%mesh%degree(3, &
-      e), &
-      e = 1, model%mesh%ne)]
+    code = [(dot_product([10000, 100, 1], model%mesh%degree(:, e)), e = 1, model%mesh%ne)]
     text = ''
     do
       first = findloc(code >= 0, .true., dim=1)

@@ -21,11 +21,11 @@ module newton
     real(wp) :: energy_tolerance = 1.0e-12_wp    !! of the correction, relative to the increment's work: when to look
     real(wp) :: residual_tolerance = 1.0e-9_wp   !! relative to the forces of the model: what decides
     integer :: most_iterations = 20
-    logical :: line_search = .false.
+    integer :: line_search_from = 6              !! first iteration with a line search: only where Newton struggles
     real(wp) :: line_search_ratio = 0.8_wp       !! as in FEAP: accepted when |dq . r| falls below this share
   end type newton_settings
 
-  real(wp), parameter :: rounding = 100*epsilon(1.0_wp)   !! a relative correction that is only rounding
+  real(wp), parameter :: rounding = 1.0e-12_wp             !! a relative correction that is only rounding
   real(wp), parameter :: settled_residual = 1.0e-6_wp     !! and the relative residual that it may leave
 
   type :: newton_record
@@ -143,7 +143,7 @@ contains
         eq%u = eq%u + du
         moves = [logical ::]
       end if
-      if (settings%line_search .and. k > 1) then
+      if (k >= settings%line_search_from) then
         call search_line(model, eq, settings, dq, du, moves, clock, status)
         if (status /= ok) exit
       else
@@ -157,6 +157,8 @@ contains
     if (len(report%fault) == 0) report%fault = status_text(status)
     if (status == no_convergence .and. report%iterations >= settings%most_iterations) then
       report%fault = 'no convergence within the allowed iterations'
+      if (any(report%records%cholesky_failed)) report%fault = report%fault// &
+        '; the tangent is not positive definite there, as at a limit point'
     end if
   end subroutine solve_increment
 

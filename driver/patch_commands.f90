@@ -303,12 +303,15 @@ contains
     real(wp), allocatable :: old(:), ideal(:)
     real(wp) :: ratio, both
     integer :: d, m, n, status
+    logical :: to_one_end, to_both_ends
 
     call read_direction(rec, new, d, log)
     if (d == 0) return
     call rec%integer(3, n, log, 'number of elements')
     ratio = 1
     both = 1
+    to_one_end = rec%has('ratio')
+    to_both_ends = rec%has('both')
     call rec%number_option('ratio', ratio, log)
     call rec%number_option('both', both, log)
     call rec%check_options([character(5) :: 'ratio', 'both'], log)
@@ -321,13 +324,13 @@ contains
     else if (.not. (ratio > 0 .and. both > 0)) then
       call rec%add_error(log, 'a ratio of element lengths must be positive', '')
       return
-    else if (rec%has('ratio') .and. rec%has('both')) then
+    else if (to_one_end .and. to_both_ends) then
       call rec%add_error(log, 'RATIo and BOTH exclude each other', &
         'RATIo grades to one end, BOTH to both')
       return
-    else if (rec%has('ratio')) then
+    else if (to_one_end) then
       allocate (ideal, source=graded_breaks(old(1), old(m), n, ratio))
-    else if (rec%has('both')) then
+    else if (to_both_ends) then
       allocate (ideal, source=symmetric_breaks(old(1), old(m), n, both))
     else
       allocate (ideal, source=uniform_breaks(old(1), old(m), n))
@@ -437,16 +440,25 @@ contains
     integer, intent(in) :: dp              !! directions
     integer, intent(in) :: first           !! its first element
     integer, intent(in) :: n(3)            !! elements per direction
-    integer, allocatable :: items(:)
     integer :: e, side
 
     call add_set(model, name, place, set_elements, [(e, e = first, first + product(n) - 1)], &
       [integer ::])
     do side = 1, 2*dp
-      items = [integer ::]
-      if (product(n) > 0) items = side_of_grid(n, side) + (first - 1)
+      if (product(n) > 0) then
+        call add_side(side_of_grid(n, side) + (first - 1))
+      else
+        call add_side([integer ::])
+      end if
+    end do
+
+  contains
+
+    subroutine add_side(items)
+      integer, intent(in) :: items(:)     !! its elements
+
       call add_set(model, name // '.' // trim(side_names(side)), place, set_surface, items, &
         spread(side, 1, size(items)))
-    end do
+    end subroutine add_side
   end subroutine add_sets
 end module patch_commands

@@ -360,7 +360,7 @@ def plot_mesh(results, number, options, title, path):
     low, high = points.min(axis=0), points.max(axis=0)
     wide, tall = np.maximum(high - low, 1e-3 * max(high - low))
     width = float(np.clip(9 * np.sqrt(wide / tall), 5.5, 14))
-    figure, ax = plt.subplots(figsize=(width, float(np.clip(width * tall / wide, 2.2, 11))))
+    figure, ax = plt.subplots(figsize=(width, float(np.clip(width * tall / wide, 3.0, 11))))
     if value_of:
         values = np.concatenate(values)
         norm, extend = colour_range(values, options.limits)
@@ -406,8 +406,12 @@ def plot_mesh(results, number, options, title, path):
         draw_axes(ax, look)
     if value_of:
         image = matplotlib.cm.ScalarMappable(norm=norm, cmap=cmap)
-        bar = figure.colorbar(image, ax=ax, extend=extend, fraction=0.035, pad=0.03, aspect=25,
-                              shrink=float(np.clip(tall / wide * 1.2, 0.5, 0.95)) if tall < wide else 0.9)
+        if wide > 2 * tall:
+            bar = figure.colorbar(image, ax=ax, extend=extend, orientation='horizontal', fraction=0.05, pad=0.16,
+                                  aspect=45, shrink=0.7)
+        else:
+            bar = figure.colorbar(image, ax=ax, extend=extend, fraction=0.035, pad=0.03, aspect=25,
+                                  shrink=float(np.clip(1.2 * tall / wide, 0.5, 0.9)))
         bar.set_label(options.field.replace('_', ' '))
         bar.outline.set_visible(False)
     scaled = '' if options.scale == 1 else f', displacement x {options.scale:g}'

@@ -96,7 +96,7 @@ contains
     double = .false.
     do e = 1, mesh%ne
       ix => mesh%connectivity(e)
-      double = double .or. repeated(ix, place)
+      if (repeated(ix, place)) double = .true.
     end do
     if (.not. double) return
 

@@ -32,6 +32,9 @@ module gpts_kernel
 
   ! det A over det m below which x_s is at a centre of curvature
   real(wp), parameter :: singular_ratio = 1.0e-12_wp
+  ! A gap below this times the coordinates is rounding: the faces touch, and their points are closed. Otherwise the
+  ! first tangent of two blocks face to face would have closed and open points at random.
+  real(wp), parameter :: touching = 32 * epsilon(1.0_wp)
 
 contains
 
@@ -55,6 +58,7 @@ contains
     integer, intent(out) :: status                       !! ok, singular_map, singular_projection
     real(wp) :: x(size(xm,1)), tau(size(xm,1),size(dshp_m,1)), nrm(size(xm,1)), area
     real(wp), dimension(size(dshp_m,1),size(dshp_m,1)) :: metric, metric_inv, curvature
+    real(wp) :: gap
     integer :: a, nes
 
     nes = size(shp_s)
@@ -66,7 +70,9 @@ contains
     do a = 1, nes
       x = x + shp_s(a) * xs(:,a)
     end do
-    call interface_response(law, dot_product(x, nrm), opening_n, response)
+    gap = dot_product(x, nrm)
+    if (abs(gap) <= touching * maxval(abs(xm))) gap = 0
+    call interface_response(law, gap, opening_n, response)
     response%penalty_energy = wt * response%penalty_energy
     response%elastic_energy = wt * response%elastic_energy
     response%dissipated = wt * response%dissipated
