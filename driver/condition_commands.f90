@@ -2,10 +2,8 @@ module condition_commands
   !! BOUNdary, DISPlacement, FORCe, FPROportional, PROPortional, LINK and SLOAd.
   !!
   !! Differences from FEAP: a record may name a set instead of a node; codes and values of several
-  !! records add up to
-  !! one condition (see module conditions); generated nodes take the codes of the record before,
-  !! whatever their
-  !! sign; time functions are mesh commands, lists of time and value.
+  !! records add up to one condition (see module conditions); generated nodes take the codes of the
+  !! record before, whatever their sign; time functions are mesh commands, lists of time and value.
   use kinds, only: wp
   use messages, only: message_log, string, quoted, whole_text, known_names
   use deck_record, only: record
@@ -21,9 +19,8 @@ contains
 
   subroutine read_values(deck, command, model, draft, log)
     !! BOUNdary, DISPlacement, FORCe, FPROportional: records `n ng v1 v2 ..` or `set v1 v2 ..`. From
-    !! node n to that of
-    !! the next record, nodes n+ng, n+2ng, ... get values on a line between both (DISP, FORC), or
-    !! those of the first.
+    !! node n to that of the next record, nodes n+ng, n+2ng, ... get values on a line between both
+    !! (DISP, FORC), or those of the first.
     type(deck_type), intent(inout) :: deck
     type(record), intent(in) :: command
     type(model_type), intent(in) :: model

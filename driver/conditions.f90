@@ -1,8 +1,7 @@
 module conditions
   !! Boundary codes, prescribed values, nodal forces, time functions and links, put on the nodes of
-  !! the finished mesh.
-  !! Codes accumulate (a dof that any record fixes is fixed); of values, a later nonzero one
-  !! replaces an earlier.
+  !! the finished mesh. Codes accumulate (a dof that any record fixes is fixed); of values, a later
+  !! nonzero one replaces an earlier.
   use kinds, only: wp
   use messages, only: message_log, deck_place, whole_text, quoted, name_hint, in_place
   use number_text, only: read_number, equal

@@ -38,8 +38,7 @@ contains
 
   subroutine next_line(deck, rec, log, more, may_end, names)
     !! The next line of a data set. A mesh command ends the set as a blank line does; unless it is
-    !! END, with a message:
-    !! the blank line is missing.
+    !! END, with a message: the blank line is missing.
     type(deck_type), intent(inout) :: deck
     type(record), intent(inout) :: rec
     type(message_log), intent(inout) :: log

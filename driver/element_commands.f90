@@ -3,8 +3,7 @@ module element_commands
   !! extraction operators).
   !!
   !! Differences from FEAP: element numbers rise one by one; 2D elements have 4 or 9 nodes, 3D
-  !! elements 8; the rest is
-  !! BEZIer's. `BODY=b` of a command gives its elements to body b (1).
+  !! elements 8; the rest is BEZIer's. `BODY=b` of a command gives its elements to body b (1).
   use kinds, only: wp
   use messages, only: message_log, whole_text, in_place
   use deck_record, only: record
@@ -215,8 +214,7 @@ contains
 
   subroutine read_bezier(deck, command, model, draft, log)
     !! Records `e DEGRee p q [r] NODEs n1 ... nn [MATErial=m] [OPERator=id]`, each followed, without
-    !! OPERator, by nn rows
-    !! of (p+1)(q+1)[(r+1)] coefficients.
+    !! OPERator, by nn rows of (p+1)(q+1)[(r+1)] coefficients.
     type(deck_type), intent(inout) :: deck
     type(record), intent(in) :: command
     type(model_type), intent(inout) :: model

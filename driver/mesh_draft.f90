@@ -1,8 +1,7 @@
 module mesh_draft
   !! The model while its deck is being read: nodes and elements as they come, and what can only be
-  !! carried out at END,
-  !! because it names nodes and sets that may follow: ties, sets, conditions, loads, interfaces,
-  !! histories.
+  !! carried out at END, because it names nodes and sets that may follow: ties, sets, conditions,
+  !! loads, interfaces, histories.
   use kinds, only: wp
   use messages, only: deck_place, string
   use model_data, only: model_type, surface_load_type, history_request

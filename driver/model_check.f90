@@ -1,7 +1,6 @@
 module model_check
   !! What can be wrong with a model as a whole: weights, missing coordinates, inverted elements,
-  !! nodes without elements.
-  !! Every finding names the data set that it comes from.
+  !! nodes without elements. Every finding names the data set that it comes from.
   use kinds, only: wp
   use status_codes, only: ok, bad_extraction, node_out_of_range, status_text
   use messages, only: message_log, deck_place, whole_text
@@ -88,8 +87,7 @@ contains
 
   subroutine check_geometry(model, draft, log)
     !! det J is positive at Gauss points and not negative at corners (where it may vanish: collapsed
-    !! edges). One message
-    !! for each data set.
+    !! edges). One message for each data set.
     type(model_type), intent(in) :: model
     type(draft_type), intent(in) :: draft
     type(message_log), intent(inout) :: log

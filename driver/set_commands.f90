@@ -22,8 +22,7 @@ contains
 
   subroutine read_set(command, draft, log)
     !! SET name NODEs n1 n2 ... | ELEMents e1 e2 ... | SURFace e1 side1 e2 side2 ... | UNION a b ...
-    !! |
-    !! BOX x1 x2 y1 y2 [z1 z2] | CORNer a b ...
+    !! | BOX x1 x2 y1 y2 [z1 z2] | CORNer a b ...
     type(record), intent(in) :: command
     type(draft_type), intent(inout) :: draft
     type(message_log), intent(inout) :: log

@@ -1,7 +1,7 @@
 module tie_nodes
   !! Nodes at the same place with the same weight become one (TIE). Candidates are found by sorting
-  !! along a direction
-  !! that no mesh is aligned with, so that only coinciding points are neighbours in that order.
+  !! along a direction that no mesh is aligned with, so that only coinciding points are neighbours
+  !! in that order.
   use kinds, only: wp
   use extraction_set, only: extraction_set_type
   implicit none (type, external)
@@ -75,8 +75,7 @@ contains
 
   subroutine renumber_mesh(mesh, map)
     !! Replace nodes by those they are tied to. Functions of one element that now share a node
-    !! become one, their sum:
-    !! as their weights agree, w N_a + w N_b = w (N_a + N_b).
+    !! become one, their sum: as their weights agree, w N_a + w N_b = w (N_a + N_b).
     type(extraction_set_type), intent(inout), target :: mesh
     integer, intent(in) :: map(:)                   !! new node of each node (nn)
     type(extraction_set_type) :: merged

@@ -32,8 +32,8 @@ module gpts_kernel
 
   ! det A over det m below which x_s is at a centre of curvature
   real(wp), parameter :: singular_ratio = 1.0e-12_wp
-  ! A gap below this times the coordinates is rounding: the faces touch, and their points are closed. Otherwise the
-  ! first tangent of two blocks face to face would have closed and open points at random.
+  ! A gap below this times the coordinates is rounding: the faces touch, and their points are closed.
+  ! Otherwise the first tangent of two blocks face to face has closed and open points at random.
   real(wp), parameter :: touching = 32 * epsilon(1.0_wp)
 
 contains

@@ -3,9 +3,10 @@
 
     check_vtk.py FOLDER
 
-FOLDER holds `plane` and `solid` of vtk_samples (quarter rings, so that the radius is checked too). Every cell of every output is evaluated by VTK at random places, from
-the .vtu files and from results.vtkhdf, and compared with the control values, weights and extraction operators in the
-group /bezel. Needs the Python packages vtk, numpy and h5py. Exit status 1 if anything differs.
+FOLDER holds `plane` and `solid` of vtk_samples (quarter rings, so that the radius is checked too). Every cell of every
+output is evaluated by VTK at random places, from the .vtu files and from results.vtkhdf, and compared with the control
+values, weights and extraction operators in the group /bezel. Needs the Python packages vtk, numpy and h5py. Exit status
+1 if anything differs.
 """
 import sys
 from math import comb
