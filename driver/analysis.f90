@@ -6,7 +6,7 @@ module analysis
   use model_data, only: model_type
   use solution_commands, only: solution_program, do_dt, do_time, do_loop, do_next, do_solve, do_tolerance, do_print, &
     do_line_search, do_cutback, do_backend, do_predictor
-  use equilibrium, only: equilibrium_type, start_equilibrium
+  use equilibrium, only: equilibrium_type, start_equilibrium, form_equilibrium
   use newton, only: newton_settings, newton_report
   use step_control, only: step_control_type, step_report, start_control, advance
   use linear_solver, only: backend_name, ordering_name
@@ -212,6 +212,7 @@ contains
     if (status /= ok) then
       call log%put('step '//text(run%step)//' failed after '//text(report%cutbacks)//' cut-backs at time ' &
         //number(run%eq%time_n)//': '//report%last%fault)
+      call restore_last_state(model, run, clock)
       call log%put('the last converged state (time '//number(run%eq%time_n)//') is on disk')
       code = exit_failed
       if (run%eq%time_n > before) then
@@ -233,6 +234,17 @@ contains
       call leave_last_state(model, run, results, clock)
     end if
   end subroutine solve_step
+
+  subroutine restore_last_state(model, run, clock)
+    !! After a failed attempt: gaps, tractions and energies of the last converged state again, for the results.
+    type(model_type), intent(inout), target :: model
+    type(run_state), intent(inout), target :: run
+    type(timer_set), intent(inout) :: clock
+    real(wp) :: none(0, 0)
+    integer :: status
+
+    call form_equilibrium(model, run%eq, .false., none, [logical ::], clock, status)
+  end subroutine restore_last_state
 
   subroutine leave_last_state(model, run, results, clock)
     !! Fields and restart state of the last converged state.

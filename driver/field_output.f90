@@ -6,6 +6,7 @@ module field_output
   use bezier_cells, only: bezier_cells_type
   use result_frame, only: result_field_type, result_frame_type, named_text_type
   use result_folder, only: result_folder_type
+  use file_system, only: rename_file, remove_file, file_exists, system_error
   use pvd_series, only: pvd_series_type
   use vtu_writer, only: write_cells, write_vertices, read_frame
   use vtkhdf_writer, only: create_vtkhdf, append_vtkhdf, resume_vtkhdf, vtkhdf_is_sound
@@ -64,8 +65,6 @@ contains
     real(wp), intent(in) :: time                           !! its time
 
     character(:), allocatable :: message
-    type(result_frame_type) :: frame
-    integer :: i
 
     call prepare(self, folder, mesh, x, w, material, body, with_interface)
     call self%cell_files%resume(folder%file('fields.pvd'), time, message)
@@ -77,17 +76,43 @@ contains
       call resume_vtkhdf(self%hdf5_path, self%cells, step, message)
       call self%note(message)
     else
-      call create_vtkhdf(self%hdf5_path, self%cells, mesh, x, w, provenance, message)
-      call self%note(message)
-      do i = 1, self%cell_files%n
-        call read_frame(folder%file(self%cell_files%files(i)%text), frame, message)
-        call self%note(message)
-        if (self%failed) return
-        call append_vtkhdf(self%hdf5_path, self%cells, frame, message)
-        call self%note(message)
-      end do
+      call write_anew(self, folder, mesh, x, w, provenance)
     end if
   end subroutine resume
+
+  subroutine write_anew(self, folder, mesh, x, w, provenance)
+    !! The HDF5 file once more, from the .vtu files; it takes its place when it is whole.
+    class(field_output_type), intent(inout) :: self
+    type(result_folder_type), intent(inout) :: folder
+    type(extraction_set_type), intent(in) :: mesh
+    real(wp), contiguous, intent(in) :: x(:, :), w(:)
+    type(named_text_type), intent(in) :: provenance(:)
+
+    character(:), allocatable :: message, new, sign
+    type(result_frame_type) :: frame
+    integer :: i
+
+    new = folder%file(hdf5_name//'.new')
+    call create_vtkhdf(new, self%cells, mesh, x, w, provenance, message)
+    call self%note(message)
+    do i = 1, self%cell_files%n
+      if (self%failed) return
+      call read_frame(folder%file(self%cell_files%files(i)%text), frame, message)
+      call self%note(message)
+      if (self%failed) return
+      call append_vtkhdf(new, self%cells, frame, message)
+      call self%note(message)
+    end do
+    if (self%failed) return
+    message = ''
+    sign = self%hdf5_path//'.open'
+    if (.not. rename_file(new, self%hdf5_path)) then
+      message = 'cannot rename a file to '//self%hdf5_path//': '//system_error()
+    else if (file_exists(sign)) then
+      if (.not. remove_file(sign)) message = 'cannot remove '//sign//': '//system_error()
+    end if
+    if (message /= '') call self%note(message)
+  end subroutine write_anew
 
   subroutine prepare(self, folder, mesh, x, w, material, body, with_interface)
     class(field_output_type), intent(inout) :: self
@@ -103,6 +128,7 @@ contains
     call self%cells%init(mesh, x, w, material, body)
     self%hdf5_path = folder%file(hdf5_name)
     self%hdf5_path = folder%file(hdf5_name//'.open')
+    self%hdf5_path = folder%file(hdf5_name//'.new.open')
     self%hdf5_path = folder%file(hdf5_name)
     if (folder%failed) call self%note(folder%message)
   end subroutine prepare

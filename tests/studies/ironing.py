@@ -5,9 +5,9 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-import numpy as np
 
 import common
+from ironing_measures import Slide, dofs
 
 bases = ["L1", "L2", "L3", "L4", "N2", "N3", "N4"]
 meshes = [1, 2, 3]
@@ -22,52 +22,20 @@ for argument in sys.argv[1:]:
 partial = bases != ["L1", "L2", "L3", "L4", "N2", "N3", "N4"] or meshes != [1, 2, 3]
 
 
-def detrended(values, columns):
-    """Largest minus smallest residual of a least-squares fit."""
-    design = np.stack(columns, axis=1)
-    rest = values - design @ np.linalg.lstsq(design, values, rcond=None)[0]
-    return np.ptp(rest)
-
-
-class Slide:
-    """What the sliding part of one history says."""
-
-    def __init__(self, run):
-        h = {name: np.array(column) for name, column in run.history.items()}
-        sliding = h["step"] >= 20
-        self.s, self.px, self.py = h["top_ux"][sliding], h["top_rx"][sliding], h["top_ry"][sliding]
-        middle = self.s - 0.15
-        # raw: all sliding steps (21 to 500); detrended: sliding steps 11 to 480, so that every run is treated alike
-        self.raw = np.ptp(self.py[1:]), np.ptp(self.px[1:])
-        late = slice(11, None)
-        self.smooth = (detrended(self.py[late], [np.ones_like(middle[late]), middle[late] ** 2]),
-                       detrended(self.px[late], [middle[late]]))
-        self.mean = abs(self.py.mean())
-        self.whole = len(self.s) == 481
-        if self.whole:
-            self.symmetry = (abs(self.py - self.py[::-1]).max(), abs(self.px + self.px[::-1]).max())
-        self.penetration = h["penetration"].max()
-
-
-def dofs(run):
-    """All control values, those of the boundary conditions included."""
-    return next(int(line.split()[1]) for line in run.check.splitlines() if line.startswith("dofs"))
-
-
 rows, slides = [], {}
 for basis in bases:
     for mesh in meshes:
         label = f"ironing_{basis}_{mesh}"
         run = common.Run("inputs/ironing.inp", label, basis=basis[0], p=basis[1], mesh=mesh)
-        run.check = common.check("inputs/ironing.inp", basis=basis[0], p=basis[1], mesh=mesh)
-        if not run.history or max(run.history["step"]) < 40:
-            rows.append([basis, mesh, dofs(run), "failed", "", "", "", "", "", ""])
+        n = dofs(common.check("inputs/ironing.inp", basis=basis[0], p=basis[1], mesh=mesh))
+        steps = int(max(run.history.get("step", [0])))
+        if steps < 40:
+            rows.append([basis, mesh, n, f"stops at step {steps}"] + [""] * 9)
             continue
         slide = Slide(run)
-        slides[basis, mesh] = dofs(run), slide, run
-        steps = int(max(run.history["step"]))
+        slides[basis, mesh] = n, slide, run
         rows.append([
-            basis, mesh, dofs(run), "" if run.status == 0 else f"stops at step {steps}",
+            basis, mesh, n, "" if run.status == 0 else f"stops at step {steps}",
             f"{slide.raw[0]:.2e}", f"{slide.raw[1]:.2e}", f"{slide.smooth[0]:.2e}", f"{slide.smooth[1]:.2e}",
             f"{slide.symmetry[0]:.0e} / {slide.symmetry[1]:.0e}" if slide.whole else "",
             int(run.iterations), int(sum(run.history["cutbacks"])),
