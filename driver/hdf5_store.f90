@@ -52,7 +52,8 @@ module hdf5_store
     generic :: write_attribute => attribute_text, attribute_l0, attribute_l1, attribute_r0
     procedure, private :: read_attribute_l0, read_attribute_r0, read_attribute_text
     generic :: read_attribute => read_attribute_l0, read_attribute_r0, read_attribute_text
-    procedure, private :: begin, complain, write_any, append_any, read_any, find_shape, attribute_any, read_attribute_any
+    procedure, private :: begin, complain, write_any, append_any, read_any, find_shape
+    procedure, private :: attribute_any, read_attribute_any
   end type hdf5_store_type
 
   interface
@@ -504,7 +505,8 @@ contains
     if (good .and. space >= 0 .and. links >= 0) &
       dataset = h5dcreate(self%file, path//c_null_char, kind, space, links, creation, default_list)
     good = dataset >= 0
-    if (good .and. product(shape_) > 0) good = h5dwrite(dataset, kind, whole_space, whole_space, default_list, data) >= 0
+    if (good .and. product(shape_) > 0) &
+      good = h5dwrite(dataset, kind, whole_space, whole_space, default_list, data) >= 0
     if (dataset >= 0) then
       if (h5dclose(dataset) < 0) good = .false.
     end if

@@ -33,7 +33,10 @@ contains
     logical :: good
 
     call read_header(deck, model, draft, log, good)
-    if (.not. good) return
+    if (.not. good) then
+      call skip_mesh(deck, log)
+      return
+    end if
     call draft%start(model)
     do
       call deck%next_command(rec, log)
@@ -52,6 +55,20 @@ contains
     end do
     call complete_model(model, draft, log)
   end subroutine read_model
+
+  subroutine skip_mesh(deck, log)
+    !! Goes on behind END, or before BATCh.
+    type(deck_type), intent(inout) :: deck
+    type(message_log), intent(inout) :: log
+    type(record) :: rec
+
+    do
+      call deck%next_record(rec, log)
+      if (rec%end_of_deck .or. rec%key(1) == 'end') return
+      if (rec%key(1) == 'batc') exit
+    end do
+    call deck%push_back(rec)
+  end subroutine skip_mesh
 
   subroutine read_command(deck, rec, model, draft, log)
     type(deck_type), intent(inout) :: deck

@@ -179,7 +179,7 @@ contains
     type(result_field_type), allocatable, intent(out) :: fields(:)
     integer, pointer, contiguous :: nodes(:)
     integer :: i, j, k, n, a
-    character(8), parameter :: names(5) = [character(8) :: 'gap', 'traction', 'active', 'paired', 'interface']
+    character(9), parameter :: names(5) = [character(9) :: 'gap', 'traction', 'active', 'paired', 'interface']
 
     n = 0
     do i = 1, size(eq%interfaces)

@@ -1,10 +1,11 @@
+#!/usr/bin/env bash
 # Faulty decks: exit status 2, and one message for each `! expect:` comment, at its line (`! expect anywhere:`: at any
 # line), no more and no fewer.
 set -u
 failures=0
 
 check() {
-  local deck=$1 name=${1##*/} output status expected found
+  local deck=$1 name=${1##*/} before=$failures output status expected found
   output=$("$BEZEL" "$deck" --check 2>&1 </dev/null)
   status=$?
   if [ $status -ne 2 ]; then
@@ -27,7 +28,7 @@ check() {
     echo "$name: missing: $line"
     failures=$((failures + 1))
   done < <(grep -n '! expect' "$deck")
-  if [ $failures -ne 0 ]; then echo "$output"; fi
+  if [ $failures -ne $before ]; then echo "$output"; fi
 }
 
 count=0

@@ -23,8 +23,8 @@ program vtk_samples
 contains
 
   subroutine write_sample(path, ndm, degree)
-    !! Angle along the first direction (clockwise), radius 1..2 along the second, height 0..3 along the third. Two elements stand
-    !! one beside the other, the second one with its functions in reverse.
+    !! Angle along the first direction (clockwise), radius 1..2 along the second, height 0..3 along the third. Two
+    !! elements stand one beside the other, the second one with its functions in reverse.
     character(*), intent(in) :: path
     integer, intent(in) :: ndm, degree(3)
 
