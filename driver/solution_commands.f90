@@ -127,7 +127,7 @@ contains
       call log%add_error(program%commands(open_loops(n))%at, 'LOOP', 'this loop is not closed', &
         'Add NEXT before END')
     end do
-    if (.not. begun) call rec%add_error(log, 'the deck has no solution commands', &
+    if (.not. begun .and. log%error_count() == 0) call rec%add_error(log, 'the deck has no solution commands', &
       'Add BATCh, DT,,1, TIME, TANG,,1, END after the mesh')
   end subroutine read_solution
 

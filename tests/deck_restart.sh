@@ -2,7 +2,7 @@
 # A run killed at random instants and continued each time leaves the history of an undisturbed run, bit for bit.
 # Usage: BEZEL=path deck_restart.sh [kills]     (default 3)
 set -u
-deck=$(dirname "$(readlink -f "$0")")/../inputs/ironing.inp
+deck=$BEZEL_SOURCE/inputs/ironing.inp
 kills=${1-3}
 arguments=("$deck" p=2 last=60)
 failures=0

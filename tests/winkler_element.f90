@@ -1,7 +1,7 @@
 module winkler_element
-  !! Winkler bedding: springs of stiffness k per area, normal to a line in 2D or a surface in 3D.
+  !! Winkler bedding: springs normal to a line (2D) or a surface (3D), k [force/length per area].
   !!
-  !!     fe(i,a) = sum_g k R_a (u . n) n_i w_g j_g        BEDDing k [force/length^3]
+  !!     fe(:,a) = sum_g k R_a n (n . u) w_g j_g        ke(:,a,:,b) = sum_g k R_a R_b n n^T w_g j_g
   use kinds, only: wp
   use status_codes, only: ok
   use user_element
@@ -29,13 +29,9 @@ contains
 
     self%ndm = ndm
     self%ndf = ndm
-    bad_record = min(1, size(properties))
-    fault = 'write one line: BEDDing k'
-    if (size(properties) /= 1) return
-    if (size(properties(1)%words) /= 1 .or. size(properties(1)%values) /= 1) return
-    if (properties(1)%words(1) /= 'bedd') return
-    self%k = properties(1)%values(1)
-    deallocate (fault)
+    bad_record = size(properties)
+    if (bad_record == 1) self%k = sum(properties(1)%values)
+    if (.not. self%k > 0) fault = 'the bedding takes one line, STIFfness k, with k > 0'
   end subroutine define
 
   pure subroutine sizes(self, geo, ntable, nhist)
@@ -43,9 +39,8 @@ contains
     type(element_geometry), intent(in) :: geo
     integer, intent(out) :: ntable, nhist
 
-    ntable = 0  ! nothing is precomputed
-    nhist = 0   ! nothing is remembered
-    if (geo%nen < 0 .or. self%ndm < 0) ntable = -1
+    ntable = 0*(self%ndf + geo%nen)  ! nothing is precomputed
+    nhist = 0                        ! nothing is remembered
   end subroutine sizes
 
   pure subroutine evaluate(self, task, geo, state, fe, ke, energy, status)
@@ -56,9 +51,10 @@ contains
     real(wp), contiguous, intent(inout) :: fe(:, :), ke(:, :, :, :)
     type(element_energy), intent(out) :: energy
     integer, intent(out) :: status
-    real(wp) :: shp(geo%nen), dshp(geo%dp, geo%nen), d2shp(0, 0), x(geo%ndm), tau(geo%ndm, geo%dp), nrm(geo%ndm)
-    real(wp) :: area, k, un, xi(geo%dp, product(geo%degree(:geo%dp) + 1)), wt(product(geo%degree(:geo%dp) + 1))
-    integer :: a, b, g, i, j
+    real(wp) :: xi(geo%dp, product(geo%degree(:geo%dp) + 1)), wt(size(xi, 2)), area
+    real(wp) :: shp(geo%nen), dshp(geo%dp, geo%nen), d2shp(0, 0)
+    real(wp) :: x(geo%ndm), tau(geo%ndm, geo%dp), n(geo%ndm), k(geo%ndm, geo%ndm), u(geo%ndm)
+    integer :: a, b, g
 
     status = ok
     if (task == task_prepare) return
@@ -67,18 +63,17 @@ contains
     call tensor_rule(geo%degree(:geo%dp) + 1, xi, wt)
     do g = 1, size(wt)
       call shape_functions(geo%degree(:geo%dp), geo%we, geo%ce, xi(:, g), 1, shp, dshp, d2shp, status)
+      if (status == ok) call tangent_frame_at(geo%xe, shp, dshp, x, tau, n, area, status)
       if (status /= ok) return
-      call tangent_frame_at(geo%xe, shp, dshp, x, tau, nrm, area, status)
-      if (status /= ok) return
-      k = self%k*area*wt(g)
-      un = dot_product(matmul(state%ue, shp), nrm)
-      energy%stored = energy%stored + 0.5_wp*k*un**2
-      do a = 1, geo%nen
-        fe(:, a) = fe(:, a) + k*shp(a)*un*nrm
-      end do
-      if (task /= task_tangent) cycle
-      do concurrent (b=1:geo%nen, j=1:geo%ndm, a=1:geo%nen, i=1:geo%ndm, a >= b)  ! symmetric: only a >= b
-        ke(i, a, j, b) = ke(i, a, j, b) + k*shp(a)*nrm(i)*shp(b)*nrm(j)
+      k = self%k*area*wt(g)*spread(n, 2, geo%ndm)*spread(n, 1, geo%ndm)
+      u = matmul(state%ue, shp)
+      energy%stored = energy%stored + 0.5_wp*dot_product(u, matmul(k, u))
+      do b = 1, geo%nen
+        fe(:, b) = fe(:, b) + matmul(k, u)*shp(b)
+        if (task /= task_tangent) cycle
+        do a = b, geo%nen  ! a symmetric element fills the blocks a >= b
+          ke(:, a, :, b) = ke(:, a, :, b) + k*shp(a)*shp(b)
+        end do
       end do
     end do
   end subroutine evaluate

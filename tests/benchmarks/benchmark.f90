@@ -11,7 +11,7 @@ program benchmark
       call measure_solid_kernel(dimension, p)
     end do
   end do
-  do dimension = 1, 3
+  do dimension = 2, 3
     do p = 1, 4
       call measure_shape_functions(dimension, p)
     end do
