@@ -35,6 +35,8 @@ module analysis
     type(step_control_type) :: control
     type(newton_settings) :: settings
     real(wp) :: dt = 1, target_time = 0
+    real(wp) :: dt_began = 0             !! time when DT was set
+    integer :: dt_count = 0              !! TIMEs since then: n*dt has no rounding to add up
     integer :: step = 0                  !! steps asked for so far
     integer :: resumed_step = 0          !! steps that a restart has behind it
     integer :: steps_in_all = 0
@@ -131,8 +133,11 @@ contains
         select case (command%what)
         case (do_dt)
           run%dt = command%value(1)
+          run%dt_began = run%target_time
+          run%dt_count = 0
         case (do_time)
-          run%target_time = run%target_time + run%dt
+          run%dt_count = run%dt_count + 1
+          run%target_time = run%dt_began + run%dt_count*run%dt
           run%step = run%step + 1
         case (do_tolerance)
           run%settings%energy_tolerance = command%value(1)

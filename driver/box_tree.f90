@@ -28,12 +28,14 @@ contains
     real(wp), intent(in) :: lo(:, :), hi(:, :)   !! corners of the facets' boxes (ndm,nf) [length]
     integer :: nf, i, node, axis, mid
     real(wp) :: width(size(lo, 1))
+    real(wp), allocatable :: centre(:, :)        ! twice (nf,ndm)
 
     nf = size(lo, 2)
     self%ndm = size(lo, 1)
     if (allocated(self%order)) deallocate (self%order, self%first, self%last, self%left, self%lo, self%hi)
     allocate (self%order(nf), self%first(2*nf + 1), self%last(2*nf + 1), self%left(2*nf + 1))
     self%order = [(i, i=1, nf)]
+    centre = transpose(lo + hi)
     self%nnodes = 1
     self%first(1) = 1
     self%last(1) = nf
@@ -44,12 +46,11 @@ contains
       associate (a => self%first(node), b => self%last(node))
         if (b - a + 1 <= leaf_size) cycle
         do i = 1, self%ndm
-          width(i) = maxval(lo(i, self%order(a:b)) + hi(i, self%order(a:b))) &
-            - minval(lo(i, self%order(a:b)) + hi(i, self%order(a:b)))
+          width(i) = maxval(centre(self%order(a:b), i)) - minval(centre(self%order(a:b), i))
         end do
         axis = maxloc(width, 1)
         mid = (a + b)/2
-        call split_at(self%order(a:b), lo(axis, :) + hi(axis, :), mid - a + 1)
+        call split_at(self%order(a:b), centre(:, axis), mid - a + 1)
         self%left(node) = self%nnodes + 1
         self%first(self%nnodes + 1) = a
         self%last(self%nnodes + 1) = mid

@@ -170,10 +170,9 @@ contains
     real(wp), intent(inout) :: xi(:)
     integer :: s
 
-    do s = 1, size(surface%neighbour, 1)
-      if (surface%neighbour(s, to) == from) exit
-    end do
-    if (s > size(surface%neighbour, 1)) s = side
+    s = side + merge(1, -1, mod(side, 2) == 1)  ! facets of one patch run alike; in a ring of two both sides would fit
+    if (surface%neighbour(s, to) /= from) s = findloc(surface%neighbour(:, to), from, 1)
+    if (s == 0) s = side
     if (size(xi) == 1) then
       xi(1) = merge(0.0_wp, 1.0_wp, s == 1)
     else

@@ -335,9 +335,23 @@ contains
         ptr(lists + 1) = items + 1
       end do
     end do
-    ptr = ptr(1:lists + 1)
-    nodes = nodes(1:items)
+    call cut(ptr, lists + 1)
+    call cut(nodes, items)
   end subroutine pair_lists
+
+  pure subroutine cut(array, n)
+    !! Keep the first n items; element by element, as the temporary of array(1:n) may be larger than the stack.
+    integer, allocatable, intent(inout) :: array(:)
+    integer, intent(in) :: n
+    integer, allocatable :: smaller(:)
+    integer :: i
+
+    allocate (smaller(n))
+    do i = 1, n
+      smaller(i) = array(i)
+    end do
+    call move_alloc(smaller, array)
+  end subroutine cut
 
   pure subroutine reserve(array, needed)
     !! Room for so many items; doubling, so that growth costs little.

@@ -25,7 +25,12 @@ program bezel
   type(timer_set) :: clock
   character(:), allocatable :: parameters
   integer :: code, i
+  interface
+    subroutine raise_stack_limit() bind(c, name='bezel_raise_stack_limit')
+    end subroutine raise_stack_limit
+  end interface
 
+  call raise_stack_limit()
   call clock%reset()
   call read_command_line(options, messages_of_deck)
   if (options%help) then

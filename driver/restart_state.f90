@@ -4,6 +4,7 @@ module restart_state
   !! the run that goes on and in the one that restarts alike: both continue with the same bits.
   use kinds, only: wp, i8
   use hdf5_store, only: hdf5_store_type
+  use shortest_text, only: integer_text
   use equilibrium, only: equilibrium_type
   use interface_points, only: forget_search
   use step_control, only: step_control_type
@@ -36,7 +37,7 @@ contains
     call store%write('/rate', control%rate)
     call store%write('/history', eq%bulk%hist_n)
     do i = 1, size(eq%interfaces)
-      group = '/interface'//achar(iachar('0') + i)
+      group = '/interface'//integer_text(i)
       call store%make_group(group)
       call store%write(group//'/facet', eq%interfaces(i)%facet_n)
       call store%write(group//'/xi', eq%interfaces(i)%xi_n)
@@ -113,7 +114,7 @@ contains
       eq%bulk%hist = history
     end if
     do i = 1, size(eq%interfaces)
-      group = '/interface'//achar(iachar('0') + i)
+      group = '/interface'//integer_text(i)
       call store%read(group//'/facet', facet)
       call store%read(group//'/xi', xi)
       call store%read(group//'/history', hist)

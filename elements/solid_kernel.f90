@@ -66,7 +66,7 @@ contains
     real(wp), contiguous, intent(in) :: ue(:,:)       !! displacements (ndm,nen) [length]
     type(solid_law), intent(in) :: law                !! material law of dimension ndm
     real(wp), contiguous, intent(out) :: fe(:,:)      !! internal force (ndm,nen) [force]
-    real(wp), contiguous, intent(out) :: ke(:,:,:,:)  !! df/du (ndm,nen,ndm,nen), zero for a < b
+    real(wp), contiguous, intent(inout) :: ke(:,:,:,:)  !! df/du (ndm,nen,ndm,nen), blocks a >= b
     real(wp), intent(out) :: energy                   !! stored energy [force length]
     integer, intent(out) :: status                    !! ok, inverted_element, law_failed
 
@@ -120,20 +120,15 @@ contains
     real(wp), intent(in) :: ue(ndm,nen)               !! displacements
     type(solid_law), intent(in) :: law                !! material law
     real(wp), intent(out) :: fe(ndm,nen)              !! internal force
-    real(wp), intent(out) :: ke(ndm,nen,ndm,nen)      !! its derivative, blocks a >= b
+    real(wp), intent(inout) :: ke(ndm,nen,ndm,nen)    !! its derivative, blocks a >= b
     real(wp), intent(out) :: energy                   !! stored energy
     integer, intent(out) :: status                    !! ok, inverted_element, law_failed
-    ! functions in fours and points in pairs, filled up with zeros, leave no remainder loops
-    real(wp) :: grad(4*((nen + 3)/4),ndm,2*((ng + 1)/2))  ! G_aJ, functions first
-    real(wp) :: a(ndm,ndm,ndm,ndm,ng)                     ! A_iJkL V_g
-    real(wp) :: h(ndm,ndm,ndm,2*((ng + 1)/2))             ! A_iJkL G_bL V_g of one function b
-    real(wp) :: column(4*((nen + 3)/4),ndm,ndm)           ! K_ai,bk of one function b
+    real(wp) :: a(ndm,ndm,ndm,ndm,ng)                 ! A_iJkL V_g
     real(wp) :: f(ndm,ndm), p(ndm,ndm), psi
-    integer :: b, g, i, k
+    integer :: g
 
     fe = 0
     energy = 0
-    ke = 0
     status = ok
     do g = 1, ng
       call deformation(ndm, nen, dshp(1,1,g), ue, f)
@@ -144,21 +139,84 @@ contains
       p = p*dvol(g)
       call add_force(ndm, nen, dshp(1,1,g), p, fe)
     end do
+    if (ndm == 2) then
+      call add_columns(2, 8, nen, ng, (nen + 7)/8, dshp, a, ke)
+    else
+      call add_columns(3, 4, nen, ng, (nen + 3)/4, dshp, a, ke)
+    end if
+  end subroutine tangent_of
 
-    call functions_first(ndm, nen, ng, size(grad, 1), size(grad, 3), dshp, grad)
-    h(:,:,:,size(h, 4)) = 0
+  pure subroutine add_columns(ndm, width, nen, ng, blocks, dshp, a, ke)
+    !! K_ai,bk = sum_gJ G_aJ h_iJk, h_iJk = A_iJkL G_bL V_g, one b after the other. Functions a are
+    !! taken in blocks, filled up with zeros, so large that the sums of a block stay in registers.
+    integer, value :: ndm                             !! dimension
+    integer, value :: width                           !! functions of a block
+    integer, value :: nen                             !! functions
+    integer, value :: ng                              !! Gauss points
+    integer, value :: blocks                          !! that hold all functions
+    real(wp), intent(in) :: dshp(ndm,nen,ng)          !! reference gradients G_aJ
+    real(wp), intent(in) :: a(ndm,ndm,ndm,ndm,ng)     !! A_iJkL V_g
+    real(wp), intent(inout) :: ke(ndm,nen,ndm,nen)    !! its blocks a >= b are set
+    real(wp) :: grad(width,ndm,ng,blocks), h(ndm,ndm,ndm,ng), sums(width,ndm,ndm)
+    integer :: b, block, first, g, i, j, k, last, r
+
+    do block = 1, blocks
+      first = width*(block - 1)
+      last = min(width, nen - first)
+      do g = 1, ng
+        do j = 1, ndm
+          do r = 1, last
+            grad(r,j,g,block) = dshp(j,first+r,g)
+          end do
+          do r = last + 1, width
+            grad(r,j,g,block) = 0
+          end do
+        end do
+      end do
+    end do
     do b = 1, nen
       do g = 1, ng
         call contract(ndm, a(1,1,1,1,g), dshp(1,b,g), h(1,1,1,g))
       end do
-      call add_column(ndm, 4*((b - 1)/4) + 1, size(grad, 1), size(grad, 3), grad, h, column)
-      do k = 1, ndm
-        do i = 1, ndm
-          ke(i,b:nen,k,b) = column(b:nen,i,k)
+      do block = (b - 1)/width + 1, blocks
+        call block_sums(ndm, width, ng, grad(1,1,1,block), h, sums)
+        first = width*(block - 1)
+        do k = 1, ndm
+          do r = max(b - first, 1), min(nen - first, width)
+            do i = 1, ndm
+              ke(i,first+r,k,b) = sums(r,i,k)
+            end do
+          end do
         end do
       end do
     end do
-  end subroutine tangent_of
+  end subroutine add_columns
+
+  pure subroutine block_sums(ndm, width, ng, grad, h, sums)
+    integer, value :: ndm                             !! dimension
+    integer, value :: width                           !! functions of a block
+    integer, value :: ng                              !! Gauss points
+    real(wp), intent(in) :: grad(width,ndm,ng)        !! G_aJ of the block
+    real(wp), intent(in) :: h(ndm,ndm,ndm,ng)         !! A_iJkL G_bL V_g of one function b
+    real(wp), intent(out) :: sums(width,ndm,ndm)      !! K_ai,bk
+    real(wp) :: c(width,ndm,ndm)
+    integer :: a, g, i, j, k
+
+    c = 0
+    do g = 1, ng
+      do j = 1, ndm
+        do k = 1, ndm
+          do i = 1, ndm
+            !GCC$ unroll 1
+            do a = 1, width          ! one or two vectors, which an early unrolling would hide
+              c(a,i,k) = c(a,i,k) + grad(a,j,g)*h(i,j,k,g)
+            end do
+          end do
+        end do
+      end do
+    end do
+    sums = c
+  end subroutine block_sums
 
   pure subroutine force_of(ndm, nen, ng, dshp, dvol, ue, law, fe, energy, status)
     integer, value :: ndm                             !! dimension
@@ -226,25 +284,6 @@ contains
     end do
   end subroutine add_force
 
-  pure subroutine functions_first(ndm, nen, ng, rows, pairs, dshp, grad)
-    integer, value :: ndm                             !! dimension
-    integer, value :: nen                             !! functions
-    integer, value :: ng                              !! Gauss points
-    integer, value :: rows                            !! functions, rounded up
-    integer, value :: pairs                           !! Gauss points, rounded up
-    real(wp), intent(in) :: dshp(ndm,nen,ng)          !! reference gradients
-    real(wp), intent(out) :: grad(rows,ndm,pairs)     !! the same, filled up with zeros
-    integer :: g, j
-
-    do g = 1, ng
-      do j = 1, ndm
-        grad(:nen,j,g) = dshp(j,:,g)
-        if (rows > nen) grad(nen+1:,j,g) = 0
-      end do
-    end do
-    if (pairs > ng) grad(:,:,pairs) = 0
-  end subroutine functions_first
-
   pure subroutine contract(ndm, a, dshp, h)
     integer, value :: ndm                             !! dimension
     real(wp), intent(in) :: a(ndm**3,ndm)             !! A_iJkL V_g, the first three indices as one
@@ -257,32 +296,5 @@ contains
       h = h + a(:,l)*dshp(l)
     end do
   end subroutine contract
-
-  pure subroutine add_column(ndm, first, rows, pairs, grad, h, column)
-    integer, value :: ndm                             !! dimension
-    integer, value :: first                           !! first function that counts
-    integer, value :: rows                            !! functions, rounded up
-    integer, value :: pairs                           !! Gauss points, rounded up
-    real(wp), intent(in) :: grad(rows,ndm,pairs)      !! G_aJ
-    real(wp), intent(in) :: h(ndm,ndm,ndm,pairs)      !! A_iJkL G_bL V_g
-    real(wp), intent(out) :: column(rows,ndm,ndm)     !! K_ai,bk = sum_gJ G_aJ h_iJk
-    real(wp) :: c
-    integer :: a, g, i, j, k
-
-    column = 0
-    do g = 1, pairs, 2
-      do k = 1, ndm
-        do i = 1, ndm
-          do a = first, rows
-            c = column(a,i,k)
-            do j = 1, ndm
-              c = c + grad(a,j,g)*h(i,j,k,g) + grad(a,j,g+1)*h(i,j,k,g+1)
-            end do
-            column(a,i,k) = c
-          end do
-        end do
-      end do
-    end do
-  end subroutine add_column
 
 end module solid_kernel

@@ -250,15 +250,22 @@ contains
     !! Gives back memory that was reserved for growth; more can still be added.
     class(extraction_set_type), intent(inout) :: self
 
+    integer, allocatable :: degree(:,:)
+    integer :: e
+
     if (.not. allocated(self%dp)) call self%init()
-    self%dp = self%dp(1:self%ne)
-    self%degree = self%degree(:,1:self%ne)
-    self%operator_of = self%operator_of(1:self%ne)
-    self%nodes = self%nodes(1:self%node_ptr(self%ne+1)-1)
-    self%node_ptr = self%node_ptr(1:self%ne+1)
-    self%coef = self%coef(1:self%op_ptr(self%nop+1)-1)
-    self%op_rows = self%op_rows(1:self%nop)
-    self%op_columns = self%op_columns(1:self%nop)
+    allocate (degree(3,self%ne))
+    do e = 1, self%ne
+      degree(:,e) = self%degree(:,e)
+    end do
+    call move_alloc(degree, self%degree)
+    call shrink(self%dp, self%ne)
+    call shrink(self%operator_of, self%ne)
+    call shrink(self%nodes, self%node_ptr(self%ne+1) - 1)
+    call shrink(self%node_ptr, self%ne + 1)
+    call shrink_real(self%coef, self%op_ptr(self%nop+1) - 1)
+    call shrink(self%op_rows, self%nop)
+    call shrink(self%op_columns, self%nop)
     self%op_ptr = self%op_ptr(1:self%nop+1)
     self%hash = self%hash(1:self%nop)
   end subroutine finish
@@ -353,4 +360,34 @@ contains
     larger(1:size(array)) = array
     call move_alloc(larger, array)
   end subroutine grow_real
+
+  ! Not `array = array(1:n)`: its temporary may be larger than the stack.
+
+  pure subroutine shrink(array, n)
+    integer, allocatable, intent(inout) :: array(:)    !! keeps its first n items
+    integer, intent(in) :: n
+
+    integer, allocatable :: smaller(:)
+    integer :: i
+
+    allocate (smaller(n))
+    do i = 1, n
+      smaller(i) = array(i)
+    end do
+    call move_alloc(smaller, array)
+  end subroutine shrink
+
+  pure subroutine shrink_real(array, n)
+    real(wp), allocatable, intent(inout) :: array(:)   !! keeps its first n items
+    integer(i8), intent(in) :: n
+
+    real(wp), allocatable :: smaller(:)
+    integer(i8) :: i
+
+    allocate (smaller(n))
+    do i = 1, n
+      smaller(i) = array(i)
+    end do
+    call move_alloc(smaller, array)
+  end subroutine shrink_real
 end module extraction_set

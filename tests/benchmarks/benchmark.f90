@@ -1,14 +1,23 @@
 program benchmark
   !! What the parts of the program cost, as lines for tests/benchmark.
   !! benchmark PROJECT SCRATCH: the project's folder, a folder for files that are written and removed.
+  use model_benchmarks, only: measure_assembly, measure_system
+  use search_benchmarks, only: measure_search
   use element_benchmarks, only: measure_solid_kernel, measure_shape_functions, measure_interface_kernel, &
     measure_projection
   implicit none (type, external)
-  integer :: dimension, p
+  integer :: dimension, p, mesh
+  character(1000) :: project, scratch
+
+  call get_command_argument(1, project)
+  call get_command_argument(2, scratch)
+  if (scratch == '') error stop 'benchmark PROJECT SCRATCH: two folders are expected'
 
   do dimension = 2, 3
     do p = 1, merge(4, 3, dimension == 2)
       call measure_solid_kernel(dimension, p)
+      call measure_assembly(trim(scratch), dimension, 'N', p, merge(24, 6, dimension == 2))
+      call measure_assembly(trim(scratch), dimension, 'L', p, merge(24, 6, dimension == 2))
     end do
   end do
   do dimension = 2, 3
@@ -21,5 +30,14 @@ program benchmark
       call measure_interface_kernel(dimension, p)
       call measure_projection(dimension, p)
     end do
+  end do
+  do p = 2, 5
+    call measure_search(2, 10**p)
+  end do
+  do p = 1, 4
+    call measure_search(3, nint(10**(0.5*(p + 1))))
+  end do
+  do mesh = 1, 3
+    call measure_system(trim(project), trim(scratch), mesh)
   end do
 end program benchmark

@@ -13,7 +13,8 @@ import common
 
 done = subprocess.run([common.build / "tests" / "study_convergence"], capture_output=True, text=True, check=True,
                       env={**os.environ, "BEZEL_SOURCE": str(common.root)})
-runs = [{"case": row["basis"] + row["p"], **{name: float(row[name]) for name in ("p", "mesh", "dofs", "energy", "l2", "seconds")}}
+numbers = "p", "mesh", "dofs", "energy", "l2", "seconds"
+runs = [{"case": row["basis"] + row["p"], **{name: float(row[name]) for name in numbers}}
         for row in csv.DictReader(done.stdout.splitlines())]
 cases = {}
 for run in runs:
@@ -27,11 +28,12 @@ def rates(series, norm):
 
 rows = []
 for case, series in sorted(cases.items()):
-    energy, l2 = rates(series, "energy"), rates(series, "l2")
+    energy, l2 = ([""] + [f"{rate:.2f}" for rate in rates(series, norm)] for norm in ("energy", "l2"))
     for i, run in enumerate(series):
-        rows.append([case, int(run["mesh"]), int(run["dofs"]), f"{run['energy']:.2e}", f"{energy[i - 1]:.2f}" if i else "",
-                     f"{run['l2']:.2e}", f"{l2[i - 1]:.2f}" if i else "", f"{1e3 * run['seconds']:.1f}"])
-common.table("convergence", ["basis", "elements per side", "dofs", "energy error", "rate", "L2 error", "rate", "time [ms]"], rows)
+        rows.append([case, int(run["mesh"]), int(run["dofs"]), f"{run['energy']:.2e}", energy[i],
+                     f"{run['l2']:.2e}", l2[i] if run["l2"] > 1e-12 else "rounding", f"{1e3 * run['seconds']:.1f}"])
+common.table("convergence", ["basis", "elements per side", "dofs", "energy error", "rate", "L2 error", "rate",
+                             "time [ms]"], rows)
 
 chart, panels = plt.subplots(1, 2, figsize=(11, 4.6), sharey=True)
 colours = dict(zip(range(1, 6), ["tab:gray", "tab:blue", "tab:orange", "tab:green", "tab:red"]))
