@@ -9,7 +9,7 @@ module analysis
   use equilibrium, only: equilibrium_type, start_equilibrium, form_equilibrium
   use newton, only: newton_settings, newton_report
   use step_control, only: step_control_type, step_report, start_control, advance
-  use linear_solver, only: backend_name, ordering_name
+  use linear_solver, only: backend_name, ordering_name, backend_cholmod
   use restart_state, only: read_restart
   use result_frame, only: named_text_type
   use run_results, only: run_results_type
@@ -67,6 +67,13 @@ contains
       code = exit_deck
       return
     end if
+    if (.not. run%eq%system%symmetric .and. &
+      any(program%commands%what == do_backend .and. program%commands%count == backend_cholmod)) then
+      call log%put('error: SOLVer CHOLmod needs a symmetric tangent, but follower loads or an element make it '// &
+        'unsymmetric. Use SOLVer UMFPack or AUTO')
+      code = exit_deck
+      return
+    end if
     call start_control(run%control, model)
     if (restart) then
       call read_restart(results%folder%file('restart.h5'), results%identity, run%resumed_step, run%eq, run%control, &
@@ -84,7 +91,7 @@ contains
     call count_steps(program, run%steps_in_all)
     call log%put(text(run%eq%system%map%neq)//' equations, '//text(run%eq%point_count)//' interface points')
     call execute(model, program, run, results, log, clock, code)
-    if (code == exit_done .and. run%step > run%resumed_step) call leave_last_state(model, run, results, clock)
+    if (code == exit_done .and. run%step > run%resumed_step) call leave_last_state(model, run, results, clock, run%step)
     if (allocated(results%fault)) then
       call log%put('error: '//results%fault)
       code = exit_machine
@@ -222,8 +229,10 @@ contains
       code = exit_failed
       if (run%eq%time_n > before) then
         call results%add_row(model, run%eq, run%step, report%iterations, report%cutbacks)
+      else
+        run%step = run%step - 1
       end if
-      call leave_last_state(model, run, results, clock)
+      call leave_last_state(model, run, results, clock, run%step - merge(1, 0, run%eq%time_n > before))
       return
     end if
     call clock%start(phase_output)
@@ -236,7 +245,7 @@ contains
     if (interrupted() /= 0) then
       call log%put('interrupted after step '//text(run%step)//'; --restart continues from here')
       code = exit_failed
-      call leave_last_state(model, run, results, clock)
+      call leave_last_state(model, run, results, clock, run%step)
     end if
   end subroutine solve_step
 
@@ -251,16 +260,17 @@ contains
     call form_equilibrium(model, run%eq, .false., none, [logical ::], clock, status)
   end subroutine restore_last_state
 
-  subroutine leave_last_state(model, run, results, clock)
-    !! Fields and restart state of the last converged state.
+  subroutine leave_last_state(model, run, results, clock, whole_steps)
+    !! Fields and restart state of the last converged state. A restart goes on after the steps that are whole.
     type(model_type), intent(inout), target :: model
     type(run_state), intent(inout), target :: run
     type(run_results_type), intent(inout) :: results
     type(timer_set), intent(inout) :: clock
+    integer, intent(in) :: whole_steps
 
     call clock%start(phase_output)
     if (model%outputs%fields .and. results%last_field_step /= run%step) call results%write_fields(model, run%eq, run%step)
-    if (model%outputs%restart_every > 0) call results%write_state(run%eq, run%control, run%step)
+    if (model%outputs%restart_every > 0) call results%write_state(run%eq, run%control, whole_steps)
     call clock%stop(phase_output)
   end subroutine leave_last_state
 

@@ -25,9 +25,8 @@ contains
     type(model_type), intent(in), target :: model
     integer, intent(in) :: e
     type(element_geometry), intent(inout) :: geo
-    real(wp), contiguous, target, intent(inout) :: xe(:, :)   !! work (ndm, >= 2*nen): points, then weights
+    real(wp), contiguous, target, intent(inout) :: xe(:, :)   !! work (ndm, at least nen)
     integer, pointer, contiguous :: nodes(:)
-    integer :: a
 
     nodes => model%mesh%connectivity(e)
     geo%ndm = model%ndm
@@ -35,11 +34,40 @@ contains
     geo%nen = size(nodes)
     geo%degree = model%mesh%degree(:, e)
     geo%ce => model%mesh%operator(e)
-    do a = 1, geo%nen
-      xe(:, a) = model%x(:, nodes(a))
-    end do
+    call gather(nodes, model%x, xe)
     geo%xe => xe(:, 1:geo%nen)
   end subroutine bind_geometry
+
+  pure subroutine gather(nodes, values, local)
+    !! The values of an element's nodes.
+    integer, intent(in) :: nodes(:)
+    real(wp), contiguous, intent(in) :: values(:, :)      !! of all nodes (at least size(local,1),nn)
+    real(wp), contiguous, intent(inout) :: local(:, :)    !! (:, at least size(nodes))
+
+    ! a literal passed by value spares a call of memmove for each node
+    select case (size(local, 1))
+    case (2)
+      call gather_components(2, size(values, 1), size(nodes), nodes, values, local)
+    case (3)
+      call gather_components(3, size(values, 1), size(nodes), nodes, values, local)
+    case default
+      call gather_components(size(local, 1), size(values, 1), size(nodes), nodes, values, local)
+    end select
+  end subroutine gather
+
+  pure subroutine gather_components(m, rows, n, nodes, values, local)
+    integer, value :: m, rows, n
+    integer, intent(in) :: nodes(n)
+    real(wp), intent(in) :: values(rows, *)
+    real(wp), intent(inout) :: local(m, n)
+    integer :: a, i
+
+    do a = 1, n
+      do i = 1, m
+        local(i, a) = values(i, nodes(a))
+      end do
+    end do
+  end subroutine gather_components
 
   subroutine prepare_bulk(model, bulk, status, element)
     !! Size the stores and let every element precompute what does not change.
@@ -76,6 +104,7 @@ contains
     allocate (bulk%hist(bulk%hist_ptr(ne + 1)), source=0.0_wp)
     allocate (bulk%hist_n(bulk%hist_ptr(ne + 1)), source=0.0_wp)
     do e = 1, ne
+      if (bulk%table_ptr(e + 1) == bulk%table_ptr(e)) cycle
       call bind_geometry(model, e, geo, xe)
       we(1:geo%nen) = model%w(model%mesh%connectivity(e))
       geo%we => we(1:geo%nen)
@@ -96,7 +125,7 @@ contains
     type(model_type), intent(inout), target :: model
     type(bulk_type), intent(inout), target :: bulk
     integer, intent(in) :: task                     !! task_residual or task_tangent
-    real(wp), intent(in) :: u(:, :), un(:, :)       !! control values now and committed (ndf,nn)
+    real(wp), contiguous, intent(in) :: u(:, :), un(:, :)  !! control values now and committed (ndf,nn)
     real(wp), intent(in) :: du(:, :)                !! prescribed increments not yet in u (ndf,nn)
     logical, intent(in) :: moves(:)                 !! (nn) du is not zero there; size 0: nowhere
     real(wp), intent(in) :: time, dt
@@ -134,10 +163,8 @@ contains
         state%hist_n => bulk%hist_n(bulk%hist_ptr(e) + 1:bulk%hist_ptr(e + 1))
         state%ue(1:ndf, 1:n) => ue
         state%un(1:ndf, 1:n) => une
-        do a = 1, n
-          state%ue(:, a) = u(1:ndf, nodes(a))
-          state%un(:, a) = un(1:ndf, nodes(a))
-        end do
+        call gather(nodes, u, state%ue)
+        call gather(nodes, un, state%un)
         fe(1:ndf, 1:n) => fwork
         if (task == task_tangent) then
           ke(1:ndf, 1:n, 1:ndf, 1:n) => kwork

@@ -67,7 +67,7 @@ program bezel
   end if
   if (results%folder%failed) then
     write (error_unit, '(a)') results%folder%message
-    call leave(exit_machine)
+    call leave(merge(exit_deck, exit_machine, options%restart))
   end if
   if (options%restart) then
     call log%resume(results%folder%file('log.txt'))

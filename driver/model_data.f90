@@ -62,7 +62,6 @@ module model_data
     logical :: reaction = .false.        !! <label>_rx,<label>_ry,<label>_rz: sums over the set
     logical :: displacement = .false.    !! <label>_ux,...: of the one node, or the mean over the set
     logical :: work = .false., elastic = .false., penalty = .false., dissipated = .false., penetration = .false.
-    logical :: balance = .false.         !! residual sums
   end type history_request
 
   type :: output_request

@@ -1,7 +1,7 @@
 module output_commands
   !! HISTory, OUTPut and RESTart: what is written and when.
   use kinds, only: wp
-  use messages, only: message_log, quoted, known_names
+  use messages, only: lower_case, message_log, quoted, known_names
   use deck_record, only: record
   use model_data, only: model_type
   use mesh_draft, only: draft_type, history_draft
@@ -9,15 +9,14 @@ module output_commands
   private
   public :: read_history, read_output, read_restart
 
-  character(12), parameter :: history_words(9) = [character(12) :: 'REACtion', 'DISPlacement', &
-    'WORK', 'ELAStic', &
-    'PENAlty', 'DISSipated', 'PENEtration', 'BALAnce', 'SET']
+  character(12), parameter :: history_words(8) = [character(12) :: 'REACtion', 'DISPlacement', &
+    'WORK', 'ELAStic', 'PENAlty', 'DISSipated', 'PENEtration', 'SET']
 
 contains
 
   subroutine read_history(command, draft, log)
     !! HISTory label SET=name [REACtion] [DISPlacement], or
-    !! HISTory [WORK] [ELAStic] [PENAlty] [DISSipated] [PENEtration] [BALAnce] of the whole model.
+    !! HISTory [WORK] [ELAStic] [PENAlty] [DISSipated] [PENEtration] of the whole model.
     type(record), intent(in) :: command
     type(draft_type), intent(inout) :: draft
     type(message_log), intent(inout) :: log
@@ -47,7 +46,6 @@ contains
         case ('pena'); r%penalty = .true.
         case ('diss'); r%dissipated = .true.
         case ('pene'); r%penetration = .true.
-        case ('bala'); r%balance = .true.
         case default
           call command%add_error(log, 'unknown quantity ' // quoted(command%word(i)), &
             known_names(history_words, 'words'), i)
@@ -87,6 +85,7 @@ contains
     type(model_type), intent(inout) :: model
     type(message_log), intent(inout) :: log
     character(4) :: part
+    character(:), allocatable :: word
     integer :: i, step
     real(wp) :: time
 
@@ -94,12 +93,13 @@ contains
       'Write OUTPut NONE, or any of EVERy=n, STEPs n1 n2 ..., TIMEs t1 t2 ...')
     part = ''
     do i = 2, command%count
-      select case (command%key(i))
+      word = lower_case(command%word(i))
+      select case (word)  ! whole words: a parameter may be called steps_press
       case ('none')
         model%outputs%fields = .false.
         part = ''
-      case ('ever', 'step', 'time')
-        part = command%key(i)
+      case ('ever', 'every', 'step', 'steps', 'time', 'times')
+        part = word
       case default
         select case (part)
         case ('ever')

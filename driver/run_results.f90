@@ -58,7 +58,7 @@ contains
     real(wp), intent(in) :: time
 
     self%provenance = provenance
-    call self%history%resume(self%folder%file('history.csv'), labels(model), step)
+    call self%history%resume(self%folder%file('history.csv'), labels(model), merge(-1, step, step == 0))
     if (self%history%failed) call self%note(self%history%message)
     if (.not. model%outputs%fields) return
     call self%fields%resume(self%folder, model%mesh, model%x, model%w, model%material_of, model%body_of, &

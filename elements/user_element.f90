@@ -78,7 +78,7 @@ module user_element
     logical :: symmetric = .true.        !! only blocks a >= b of ke are filled
   contains
     procedure(define_interface), deferred :: define
-    procedure(sizes_interface), deferred :: sizes
+    procedure :: sizes => no_sizes
     procedure(evaluate_interface), deferred :: evaluate
     procedure :: output_names => no_output_names
     procedure :: output => no_output
@@ -95,15 +95,6 @@ module user_element
       integer, intent(out) :: bad_record                     !! which line is at fault; 0: the set as a whole
     end subroutine define_interface
 
-    pure subroutine sizes_interface(self, geo, ntable, nhist)
-      !! How much memory the host keeps for one element.
-      import :: element_type, element_geometry
-      class(element_type), intent(in) :: self
-      type(element_geometry), intent(in) :: geo
-      integer, intent(out) :: ntable                         !! reals in geo%table
-      integer, intent(out) :: nhist                          !! reals in state%hist
-    end subroutine sizes_interface
-
     pure subroutine evaluate_interface(self, task, geo, state, fe, ke, energy, status)
       !! Carry out a task. fe and ke are overwritten (ke only in task_tangent).
       import :: element_type, element_geometry, element_state, element_energy, wp
@@ -119,6 +110,17 @@ module user_element
   end interface
 
 contains
+
+  pure subroutine no_sizes(self, geo, ntable, nhist)
+    !! How much memory the host keeps for one element. Default: none; then task_prepare is not called.
+    class(element_type), intent(in) :: self
+    type(element_geometry), intent(in) :: geo
+    integer, intent(out) :: ntable                         !! reals in geo%table
+    integer, intent(out) :: nhist                          !! reals in state%hist
+
+    ntable = 0*(self%ndf + geo%nen)
+    nhist = 0
+  end subroutine no_sizes
 
   pure subroutine no_output_names(self, names)
     class(element_type), intent(in) :: self

@@ -20,6 +20,7 @@ module knot_vectors
   private
   public :: knot_vector, open_knot_vector, knot_status, basis_values, basis_function
   public :: extraction_operators, insertion_operator, elevation_operator
+  public :: polar_row, relative_knots
 
   type :: knot_vector
     integer :: p = 0                     !! degree
@@ -210,20 +211,34 @@ contains
     end function degree_down
   end function basis_function
 
+  pure function relative_knots(u, a, b, p) result(local)
+    !! Knots relative to an element, [a,b] -> [0,1]. Where one lies at a multiple of 1/1024 but for
+    !! the uncertainty that it carries in floating point, about (p+1) eps max|u| / (b-a), it is
+    !! moved there, so that elements of a uniform mesh have bit by bit the same operator (and an
+    !! extraction set stores it once).
+    real(wp), intent(in) :: u(:)        !! knots
+    real(wp), intent(in) :: a, b        !! ends of the element, a < b
+    integer, intent(in) :: p            !! degree
+    real(wp) :: local(size(u))
+
+    real(wp), parameter :: grid = 2.0_wp**(-10)
+    real(wp) :: uncertainty
+
+    local = (u - a) / (b - a)
+    if (size(u) == 0) return
+    uncertainty = 4 * (p + 1) * epsilon(a) * maxval(abs(u)) / (b - a)
+    where (abs(local - anint(local / grid) * grid) <= min(uncertainty, grid / 4)) &
+      local = anint(local / grid) * grid
+  end function relative_knots
+
   pure subroutine extraction_operators(kv, c, first)
     !! Bezier extraction operators of all elements: N_a = sum_k c(a,k,e) B_k on element e, where
     !! function a of the element is function first(e)+a-1 of the patch.
-    !!
-    !! Knots enter relative to their element, [a,b] -> [0,1]. Where one lies at a multiple of
-    !! 1/1024 but for the uncertainty that it carries in floating point, about (p+1) eps max|u| /
-    !! (b-a), it is moved there, so that elements of a uniform mesh have bit by bit the same
-    !! operator (and an extraction set stores it once).
     type(knot_vector), intent(in) :: kv
     real(wp), allocatable, intent(out) :: c(:,:,:)   !! operators (p+1,p+1,elements)
     integer, allocatable, intent(out) :: first(:)    !! first function of each element (elements)
 
-    real(wp), parameter :: grid = 2.0_wp**(-10)
-    real(wp) :: local(1-kv%p:kv%p), t(kv%p), length, uncertainty
+    real(wp) :: local(1-kv%p:kv%p), t(kv%p)
     integer :: e, k, p, s
 
     p = kv%p
@@ -233,13 +248,7 @@ contains
       if (kv%u(s+1) <= kv%u(s)) cycle
       e = e + 1
       first(e) = s - p
-      length = kv%u(s+1) - kv%u(s)
-      local = (kv%u(s-p+1:s+p) - kv%u(s)) / length
-      if (p > 0) then
-        uncertainty = 4 * (p + 1) * epsilon(length) * maxval(abs(kv%u(s-p+1:s+p))) / length
-        where (abs(local - anint(local / grid) * grid) <= min(uncertainty, grid / 4)) &
-          local = anint(local / grid) * grid
-      end if
+      local = relative_knots(kv%u(s-p+1:s+p), kv%u(s), kv%u(s+1), p)
       do k = 0, p
         t(1:p-k) = 0.0_wp
         t(p-k+1:p) = 1.0_wp

@@ -7,6 +7,7 @@ module status_codes
     bad_knots, not_symmetric, bad_law_data, law_failed, &
     bad_extraction, node_out_of_range, not_finite
   public :: stale_pattern, singular_matrix, not_positive_definite, out_of_memory
+  public :: bad_t_mesh, not_suitable, edges_differ
   public :: status_text
 
   integer, parameter :: ok = 0
@@ -27,6 +28,9 @@ module status_codes
   integer, parameter :: singular_matrix = 15  !! the matrix is singular to working precision
   integer, parameter :: not_positive_definite = 16  !! a pivot of the Cholesky factorisation is not positive
   integer, parameter :: out_of_memory = 17  !! the memory does not suffice
+  integer, parameter :: bad_t_mesh = 18  !! degrees or lines that a T-mesh does not support
+  integer, parameter :: not_suitable = 19  !! the extensions of two T-junctions cross
+  integer, parameter :: edges_differ = 20  !! two edges to be merged are not the same curve
 
 contains
 
@@ -53,6 +57,9 @@ contains
     case (singular_matrix); text = 'the matrix is singular to working precision'
     case (not_positive_definite); text = 'the matrix is not positive definite'
     case (out_of_memory); text = 'the memory does not suffice'
+    case (bad_t_mesh); text = 'the T-mesh does not support these degrees, lines or splits'
+    case (not_suitable); text = 'the T-mesh is not analysis-suitable: the extensions of two T-junctions cross'
+    case (edges_differ); text = 'the edges to be merged are not the same curve'
     case default;               text = 'unknown status'
     end select
   end function status_text

@@ -15,7 +15,7 @@ module winkler_element
   type, extends(element_type) :: winkler_element_type
     real(wp) :: k = 0
   contains
-    procedure :: define, sizes, evaluate
+    procedure :: define, evaluate
   end type winkler_element_type
 
 contains
@@ -34,15 +34,6 @@ contains
     if (.not. self%k > 0) fault = 'the bedding takes one line, STIFfness k, with k > 0'
   end subroutine define
 
-  pure subroutine sizes(self, geo, ntable, nhist)
-    class(winkler_element_type), intent(in) :: self
-    type(element_geometry), intent(in) :: geo
-    integer, intent(out) :: ntable, nhist
-
-    ntable = 0*(self%ndf + geo%nen)  ! nothing is precomputed
-    nhist = 0                        ! nothing is remembered
-  end subroutine sizes
-
   pure subroutine evaluate(self, task, geo, state, fe, ke, energy, status)
     class(winkler_element_type), intent(in) :: self
     integer, intent(in) :: task
@@ -56,8 +47,6 @@ contains
     real(wp) :: x(geo%ndm), tau(geo%ndm, geo%dp), n(geo%ndm), k(geo%ndm, geo%ndm), u(geo%ndm)
     integer :: a, b, g
 
-    status = ok
-    if (task == task_prepare) return
     fe = 0
     if (task == task_tangent) ke = 0
     call tensor_rule(geo%degree(:geo%dp) + 1, xi, wt)

@@ -1,5 +1,5 @@
 module number_text
-  !! Numbers to and from the text of a deck, fast enough for millions of lines and rounded
+  !! Numbers to and from the text of decks and mesh files, fast enough for millions of lines and rounded
   !! correctly: up to 15 digits with small exponents are exact in double arithmetic (mantissa below
   !! 2^53, power of ten below 10^23), the rest goes through the C library's strtod. Exponents may be
   !! written with E or D.
@@ -84,7 +84,10 @@ contains
       end if
     end if
 
-    if (kept == 0) return
+    if (kept == 0) then
+      if (negative) x = -x     ! the sign of zero is kept
+      return
+    end if
     if (kept <= 18 .and. mantissa < 9007199254740992_i8 .and. &
       abs(exponent - scale) <= largest_power) then
       if (exponent >= scale) then
