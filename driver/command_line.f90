@@ -156,11 +156,13 @@ contains
     character(:), allocatable :: text            !! for --help, lines separated by line feeds
     character, parameter :: nl = new_line('a')
 
-    text = 'bezel DECK [name=value ...] [--out DIR]' // nl // nl // &
+    text = 'bezel DECK [name=value ...] [--out DIR]' // nl // &
+      'bezel --check MESH' // nl // nl // &
       'Solves the problem that the text file DECK describes.' // nl // nl // &
       '  name=value   sets a parameter of the deck, a number or a word' // nl // &
       '  --out DIR    folder of the results instead of NAME.out' // nl // &
-      '  --check      reads and verifies the deck, prints what it holds, runs nothing' // nl // &
+      '  --check      reads and verifies the deck, prints what it holds, runs nothing;' // nl // &
+      '               the same for a mesh of extraction operators (.iga, BEXT, .h5)' // nl // &
       '  --restart    continues from the result folder' // nl // &
       '  --help       prints this' // nl // &
       '  --version    prints the version' // nl // nl // &

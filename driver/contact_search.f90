@@ -6,9 +6,15 @@ module contact_search
   !! projection wins. Where two facets meet in a kink there may be no valid projection: then the nearest point of the
   !! kink is the pair, and `held` says in which directions xi rests there. Beyond the master's edge a point is
   !! unpaired.
+  !!
+  !! The cone of a kink in which this holds is narrow, (gap) x (angle), and stiff: Newton would leap over it to and fro.
+  !! So a penetrating point goes from one facet to the next only by way of the kink: when it has crossed one it is
+  !! `forced` to it for one evaluation, whose linearisation tells whether it stays there.
   use kinds, only: wp
   use status_codes, only: ok, outside_facet
   use facets, only: facet_surface
+  use rational_basis, only: shape_functions
+  use surface_frame, only: tangent_frame_at
   use box_tree, only: box_tree_type
   use closest_point, only: projection_report, homogeneous_points, closest_point_of_bezier, find_closest_point_global
   implicit none (type, external)
@@ -106,20 +112,24 @@ contains
     search%boxes_moved = search%moved
   end subroutine form_boxes
 
-  subroutine pair_point(search, surface, w, xs, facet, xi, held)
-    !! Pair a slave point. On entry facet and xi are the last pairing (facet 0: none); on return the new one.
+  subroutine pair_point(search, surface, w, xs, facet, xi, held, forced)
+    !! Pair a slave point. On entry facet, xi and held are the last pairing (facet 0: none); on return the new one.
     type(master_search), intent(inout) :: search
     type(facet_surface), intent(in), target :: surface
     real(wp), intent(in) :: w(:)                 !! weights of all nodes
     real(wp), intent(in) :: xs(:)                !! slave point (ndm) [length]
     integer, intent(inout) :: facet
     real(wp), intent(inout) :: xi(:)             !! (dp)
-    logical, intent(out) :: held(:)              !! xi rests on a kink in this direction (dp)
-    type(projection_report) :: report
+    logical, intent(inout) :: held(:)            !! xi rests on a kink in this direction (dp)
+    logical, intent(out) :: forced               !! the pair is the kink that the point has just crossed
+    type(projection_report) :: report, left
     integer :: hop, f, status, last, previous, side
-    real(wp) :: trial(size(xi))
+    real(wp) :: trial(size(xi)), left_xi(size(xi))
+    logical :: was_held
 
+    was_held = any(held)
     held = .false.
+    forced = .false.
 
     if (facet > 0) then
       f = facet
@@ -130,6 +140,15 @@ contains
         call closest_point_of_bezier(surface%set%degree(1:search%dp, f), &
           search%q(:, search%q_ptr(f):search%q_ptr(f + 1) - 1), xs, trial, report, status)
         if (status == ok) then
+          if (hop == 2 .and. .not. was_held) then
+            if (crosses_kink(search, surface, w, xs, last, left_xi, f, trial)) then
+              facet = last
+              xi = left_xi
+              held = left%sides(1:search%dp) /= 0
+              forced = .true.
+              return
+            end if
+          end if
           facet = f
           xi = trial
           if (report%distance > search%reach) then
@@ -144,6 +163,8 @@ contains
         if (side == 0) side = report%sides(2)
         previous = last
         last = f
+        left = report
+        left_xi = trial
         f = surface%neighbour(side, f)
         if (f == 0) exit
         if (f == previous) then
@@ -162,6 +183,46 @@ contains
     end if
     call pair_globally(search, surface, w, xs, facet, xi, held)
   end subroutine pair_point
+
+  function crosses_kink(search, surface, w, xs, from, xi_from, to, xi_to) result(crosses)
+    !! Whether a penetrating point has passed a kink between two facets: their normals differ at the common side.
+    type(master_search), intent(in) :: search
+    type(facet_surface), intent(in), target :: surface
+    real(wp), intent(in) :: w(:), xs(:)
+    integer, intent(in) :: from, to
+    real(wp), intent(in) :: xi_from(:)           !! on the side of `from` that was left
+    real(wp), intent(in) :: xi_to(:)             !! projection on `to`
+    logical :: crosses
+    real(wp) :: at(size(xi_to)), x(search%ndm), nrm(search%ndm), nrm_to(search%ndm)
+    integer :: s
+
+    crosses = .false.
+    call normal_at(from, xi_from, x, nrm)
+    if (dot_product(xs - x, nrm) >= 0) return
+    at = xi_to
+    do s = 1, size(surface%neighbour, 1)
+      if (surface%neighbour(s, to) == from) at((s + 1)/2) = merge(0.0_wp, 1.0_wp, mod(s, 2) == 1)
+    end do
+    call normal_at(to, at, x, nrm_to)
+    crosses = dot_product(nrm, nrm_to) < 1 - 1.0e-8_wp
+
+  contains
+
+    subroutine normal_at(f, xi, x, nrm)
+      integer, intent(in) :: f
+      real(wp), intent(in) :: xi(:)
+      real(wp), intent(out) :: x(:), nrm(:)
+      real(wp) :: shp(surface%set%nen(f)), dshp(search%dp, surface%set%nen(f)), d2shp(0, 0)
+      real(wp) :: tau(search%ndm, search%dp), area
+      integer, pointer, contiguous :: nodes(:)
+      integer :: status
+
+      nodes => surface%set%connectivity(f)
+      call shape_functions(surface%set%degree(1:search%dp, f), w(nodes), surface%set%operator(f), xi, 1, shp, dshp, &
+                           d2shp, status)
+      call tangent_frame_at(search%x(:, nodes), shp, dshp, x, tau, nrm, area, status)
+    end subroutine normal_at
+  end function crosses_kink
 
   pure subroutine carry_over(surface, from, to, side, xi)
     !! A first guess on the next facet, just inside the common side.

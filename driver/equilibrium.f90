@@ -39,6 +39,7 @@ module equilibrium
     real(wp) :: time = 0, time_n = 0
     type(energies_type) :: energies, energies_n
     integer :: active = 0                          !! interface points that carry traction
+    integer :: forced = 0                          !! interface points held on a kink for one evaluation: no solution
     integer :: point_count = 0                     !! of all interfaces
     integer :: patterns = 0                        !! how often the pattern was built
     logical :: pattern_stands = .false.
@@ -144,6 +145,7 @@ contains
       do i = 1, size(eq%interfaces)
         call pair_interface(model, eq%interfaces(i), x)
       end do
+      eq%forced = sum(eq%interfaces%forced)
       call clock%stop(phase_search)
       if (want_tangent) then
         do i = 1, size(eq%interfaces)

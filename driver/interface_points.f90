@@ -30,6 +30,8 @@ module interface_points
     integer, allocatable :: facet(:), facet_n(:)     !! (np) master facet, 0: unpaired; committed
     real(wp), allocatable :: xi(:, :), xi_n(:, :)    !! (dp,np) projection; committed
     logical, allocatable :: held(:, :)          !! (dp,np) the projection rests on a kink in this direction
+    logical, allocatable :: held_n(:, :)        !! committed
+    integer :: forced = 0                       !! points held on a kink that they have just crossed
     real(wp), allocatable :: hist(:, :), hist_n(:, :) !! (nhist,np)
     real(wp), allocatable :: gap(:), traction(:)     !! (np) of the last assembly
     logical, allocatable :: active(:)           !! (np) it carried traction
@@ -81,7 +83,7 @@ contains
       allocate (points%facet_of(points%np), points%point(dp, points%np), points%table(points%ntable, points%np))
       allocate (points%facet(points%np), points%facet_n(points%np), points%room_for(points%np), source=0)
       allocate (points%xi(dp, points%np), points%xi_n(dp, points%np), source=0.5_wp)
-      allocate (points%held(dp, points%np), source=.false.)
+      allocate (points%held(dp, points%np), points%held_n(dp, points%np), source=.false.)
       allocate (points%hist(points%nhist, points%np), points%hist_n(points%nhist, points%np), source=0.0_wp)
       allocate (points%gap(points%np), points%traction(points%np), source=0.0_wp)
       allocate (points%active(points%np), source=.false.)
@@ -141,7 +143,12 @@ contains
     integer, pointer, contiguous :: nodes(:)
     real(wp) :: xs(model%ndm)
     integer :: i, a, f
+    logical :: forced
 
+    if (allocated(points%search%x)) then
+      if (all(abs(points%search%x - x) <= 0)) return  ! the pairs stand: pairing again could release a forced one
+    end if
+    points%forced = 0
     call move_master(points%search, x)
     do i = 1, points%np
       f = points%facet_of(i)
@@ -150,7 +157,9 @@ contains
       do a = 1, size(nodes)
         xs = xs + points%table(1 + a, i)*x(:, nodes(a))
       end do
-      call pair_point(points%search, points%master, model%w, xs, points%facet(i), points%xi(:, i), points%held(:, i))
+      call pair_point(points%search, points%master, model%w, xs, points%facet(i), points%xi(:, i), points%held(:, i), &
+                      forced)
+      if (forced) points%forced = points%forced + 1
     end do
   end subroutine pair_interface
 
@@ -263,6 +272,7 @@ contains
     type(interface_points_type), intent(inout) :: points
     points%facet_n = points%facet
     points%xi_n = points%xi
+    points%held_n = points%held
     points%hist_n = points%hist
   end subroutine commit_interface
 
@@ -270,6 +280,7 @@ contains
     type(interface_points_type), intent(inout) :: points
     points%facet = points%facet_n
     points%xi = points%xi_n
+    points%held = points%held_n
     points%hist = points%hist_n
   end subroutine roll_back_interface
 
@@ -278,6 +289,7 @@ contains
     type(interface_points_type), intent(inout) :: points
     points%search%tree%nnodes = 0
     points%search%boxes_moved = -1
+    if (allocated(points%search%x)) deallocate (points%search%x)
   end subroutine forget_search
 
   function pairs_covered(points) result(covered)

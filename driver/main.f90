@@ -1,11 +1,14 @@
 program bezel
   !! bezel DECK [name=value ...] [--out DIR] [--check] [--restart] [--help] [--version]
+  !! bezel --check MESH
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use messages, only: message_log
   use command_line, only: command_options, read_command_line, usage_text
   use deck_reader, only: deck
   use model_data, only: model_type
   use mesh_commands, only: read_model, describe_model
+  use mesh_files, only: is_mesh_file, check_mesh_file
+  use mesh_exports, only: write_exports
   use solution_commands, only: solution_program, read_solution
   use result_frame, only: named_text_type
   use run_results, only: run_results_type
@@ -23,7 +26,7 @@ program bezel
   type(named_text_type), allocatable :: provenance(:)
   type(log_type) :: log
   type(timer_set) :: clock
-  character(:), allocatable :: parameters
+  character(:), allocatable :: message, parameters
   integer :: code, i
   interface
     subroutine raise_stack_limit() bind(c, name='bezel_raise_stack_limit')
@@ -41,6 +44,11 @@ program bezel
     call leave(exit_done)
   end if
   if (messages_of_deck%error_count() > 0) call refuse()
+  if (is_mesh_file(options%deck)) then
+    call check_mesh_file(options%deck, options%check, output_unit, messages_of_deck)
+    if (messages_of_deck%error_count() > 0) call refuse()
+    call leave(exit_done)
+  end if
 
   call clock%start(phase_input)
   call input%open(options%deck, options%settings, messages_of_deck)
@@ -84,6 +92,11 @@ program bezel
     named_text_type('version', version), named_text_type('compiler', compiler), &
     named_text_type('build', build_type//' '//build_flags)]
   call log%put('bezel '//version//'  '//input%title)
+  call write_exports(model, results%folder, message)
+  if (allocated(message)) then
+    call log%put('error: '//message)
+    call leave(exit_machine)
+  end if
   call run_analysis(model, commands, results, provenance, options%restart, log, clock, code)
   call log%close()
   call leave(code)

@@ -10,6 +10,7 @@ module mesh_commands
   use node_commands, only: read_header, read_coordinates
   use element_commands, only: read_elements, read_operator, read_bezier
   use patch_commands, only: read_patch
+  use spline_commands, only: read_spline_file, read_export
   use set_commands, only: read_set, read_tie
   use material_commands, only: read_material
   use condition_commands, only: read_values, read_proportional, read_links, read_surface_load
@@ -83,6 +84,7 @@ contains
     case ('oper'); call read_operator(deck, rec, model, draft, log)
     case ('bezi'); call read_bezier(deck, rec, model, draft, log)
     case ('patc'); call read_patch(deck, rec, model, draft, log)
+    case ('t-sp'); call read_spline_file(deck, rec, model, draft, log)
     case ('tie');  call read_tie(rec, draft, log)
     case ('set');  call read_set(rec, draft, log)
     case ('mate'); call read_material(deck, rec, model, log)
@@ -94,6 +96,7 @@ contains
     case ('hist'); call read_history(rec, draft, log)
     case ('outp'); call read_output(rec, model, log)
     case ('rest'); call read_restart(rec, model, log)
+    case ('expo'); call read_export(rec, model, log)
     case default;  call refuse(deck, rec, log)
     end select
   end subroutine read_command

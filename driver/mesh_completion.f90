@@ -5,6 +5,8 @@ module mesh_completion
   use model_data, only: model_type
   use mesh_draft, only: draft_type
   use set_commands, only: resolve_ties, resolve_sets
+  use spline_commands, only: follow_tied_nodes
+  use mesh_exports, only: check_exports
   use conditions, only: resolve_conditions, resolve_links
   use interface_commands, only: resolve_interfaces, resolve_loads, resolve_histories
   use model_check, only: check_mesh, check_nodes, check_geometry, switch_off_unused
@@ -27,6 +29,7 @@ contains
     model%w = draft%w(1:draft%nn)
     call model%mesh%finish()
     model%body_of = draft%body(1:model%mesh%ne)
+    if (draft%has_lost_file) return    ! most of what is to be checked would be blamed for it
     if (error_count == 0) call compare_counts(model, draft, log)
     call find_materials(model, draft, all_materials, log)
 
@@ -40,6 +43,7 @@ contains
 
     if (draft%lost_elements > 0) draft%has_lost_sets = .true.
     call resolve_ties(model, draft, log)
+    call follow_tied_nodes(model, draft)
     call resolve_sets(model, draft, log)
     call resolve_conditions(model, draft, log)
     call resolve_links(model, draft, log)
@@ -47,6 +51,7 @@ contains
     call resolve_interfaces(model, draft, log)
     call resolve_histories(model, draft, log)
     if (all_materials .and. log%error_count() == 0) call switch_off_unused(model, draft, log)
+    if (log%error_count() == error_count) call check_exports(model, log)
     call model%mesh%finish()
   end subroutine complete_model
 

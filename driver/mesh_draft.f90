@@ -16,8 +16,8 @@ module mesh_draft
   type :: element_origin
     !! The data set that elements come from.
     type(deck_place) :: at
-    character(:), allocatable :: command   !! PATCh, BEZIer, ELEMents
-    character(:), allocatable :: name      !! of a patch; else ''
+    character(:), allocatable :: command   !! PATCh, BEZIer, ELEMents, T-SPline
+    character(:), allocatable :: name      !! of a patch or a mesh file; else ''
     integer :: first = 0, last = 0         !! its elements
     logical :: is_open = .false.           !! more elements may follow
   end type element_origin
@@ -93,6 +93,7 @@ module mesh_draft
     integer, allocatable :: line(:), order(:)   !! of each element's record
     integer :: lost_elements = 0                !! that were not added because of errors
     logical :: has_lost_sets = .false.          !! some sets are empty because of errors
+    logical :: has_lost_file = .false.          !! a mesh file has errors, its sets are unknown
     type(element_origin), allocatable :: origins(:)
     type(named_operator), allocatable :: operators(:)
     type(set_request), allocatable :: sets(:)
@@ -125,7 +126,7 @@ contains
       self%interfaces(0), self%histories(0))
     allocate (self%boundary(0), self%displacement(0), self%force(0), self%proportional(0))
     allocate (model%sets(0), model%materials(0), model%props(0), model%links(0), model%loads(0), &
-      model%interfaces(0), model%histories(0))
+      model%interfaces(0), model%histories(0), model%exports(0))
     allocate (model%outputs%steps(0), model%outputs%times(0))
     call model%mesh%init()
   end subroutine start

@@ -5,10 +5,11 @@ module model_data
   use kinds, only: wp
   use extraction_set, only: extraction_set_type
   use user_element, only: element_type
+  use messages, only: deck_place
   implicit none (type, external)
   private
   public :: model_type, named_set, material_type, time_function, surface_load_type, interface_type, &
-    history_request, output_request, linear_constraint, extraction_set_type
+    history_request, output_request, linear_constraint, extraction_set_type, mesh_export
   public :: set_nodes, set_elements, set_surface
 
   integer, parameter :: set_nodes = 1, set_elements = 2, set_surface = 3
@@ -82,6 +83,13 @@ module model_data
     character(:), allocatable :: place
   end type linear_constraint
 
+  type :: mesh_export
+    !! A file that the mesh is written to (EXPOrt).
+    type(deck_place) :: at
+    character(:), allocatable :: file    !! its name in the folder of the results
+    logical :: is_text = .true.          !! .iga; else HDF5
+  end type mesh_export
+
   type :: model_type
     character(:), allocatable :: title
     integer :: ndm = 0                               !! space dimension
@@ -105,6 +113,7 @@ module model_data
     type(interface_type), allocatable :: interfaces(:)
     type(history_request), allocatable :: histories(:)
     type(output_request) :: outputs
+    type(mesh_export), allocatable :: exports(:)
   end type model_type
 
 contains

@@ -90,7 +90,7 @@ contains
         if (status /= ok) exit
         call measure(eq, reference, size_r)
         report%residual = ratio(size_r, reference)
-        if (report%residual <= settings%residual_tolerance .or. settled) then
+        if ((report%residual <= settings%residual_tolerance .or. settled) .and. eq%forced == 0) then
           call final_record(eq, report, was_active)
           return
         end if
@@ -110,7 +110,7 @@ contains
       end if
       if (k > 1 .or. continue_rate) then
         ! nothing left to correct: the state stands without another solution
-        if (report%residual <= settings%residual_tolerance .and. size(moves) == 0) then
+        if (report%residual <= settings%residual_tolerance .and. size(moves) == 0 .and. eq%forced == 0) then
           call final_record(eq, report, was_active)
           return
         end if
@@ -143,7 +143,7 @@ contains
         eq%u = eq%u + du
         moves = [logical ::]
       end if
-      if (k >= settings%line_search_from) then
+      if (k >= settings%line_search_from .and. eq%forced == 0) then
         call search_line(model, eq, settings, dq, du, moves, clock, status)
         if (status /= ok) exit
       else

@@ -40,6 +40,7 @@ contains
       group = '/interface'//integer_text(i)
       call store%make_group(group)
       call store%write(group//'/facet', eq%interfaces(i)%facet_n)
+      call store%write(group//'/held', merge(1, 0, eq%interfaces(i)%held_n))
       call store%write(group//'/xi', eq%interfaces(i)%xi_n)
       call store%write(group//'/history', eq%interfaces(i)%hist_n)
       call forget_search(eq%interfaces(i))
@@ -59,7 +60,7 @@ contains
     character(:), allocatable, intent(out) :: message
     type(hdf5_store_type) :: store
     character(:), allocatable :: group, stored
-    integer, allocatable :: numbers(:), facet(:)
+    integer, allocatable :: numbers(:), facet(:), held(:, :)
     real(wp), allocatable :: times(:), energies(:), u(:, :), f(:, :), fext(:, :), rate(:, :), history(:), xi(:, :), &
       hist(:, :)
     integer :: i
@@ -116,12 +117,15 @@ contains
     do i = 1, size(eq%interfaces)
       group = '/interface'//integer_text(i)
       call store%read(group//'/facet', facet)
+      call store%read(group//'/held', held)
       call store%read(group//'/xi', xi)
       call store%read(group//'/history', hist)
       if (store%failed) exit
       associate (points => eq%interfaces(i))
         points%facet_n = facet
         points%facet = facet
+        points%held_n = held == 1
+        points%held = points%held_n
         points%xi_n = xi
         points%xi = xi
         points%hist_n = reshape(hist, shape(points%hist))

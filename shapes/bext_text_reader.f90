@@ -17,7 +17,8 @@ module bext_text_reader
   !! list that is wrong.
   use kinds, only: wp
   use text_scanner, only: scanner_type, list_type, list_done, list_ended, list_bad_item, as_whole
-  use extraction_mesh, only: extraction_mesh_type, problem_list, check_elements, whole_number
+  use extraction_mesh, only: extraction_mesh_type, problem_list, check_elements, whole_number, &
+    printable
   use bext_draft, only: bext_draft_type, element_block, block_problem
   implicit none (type, external)
   private
@@ -123,7 +124,7 @@ contains
       fact = 'the file ends after ' // whole_number(list%found) // ' of ' // whole_number(n) // &
         ' numbers'
     case (list_bad_item)
-      fact = '"' // shown(list%word) // '" is not a finite number'
+      fact = '"' // printable(list%word) // '" is not a finite number'
     case default
       fact = 'expected ' // whole_number(n) // ' numbers, found ' // whole_number(list%found)
     end select
@@ -187,7 +188,7 @@ contains
         block%vectors = numbers(4)
         if (n > 4) block%degree(1:min(n,7)-4) = numbers(5:min(n,7))
         if (len(word) > 0) then
-          fact = '"' // shown(word) // '" is not a finite number'
+          fact = '"' // printable(word) // '" is not a finite number'
         else if (n < 5 .or. n > 7 .or. .not. all(whole)) then
           fact = 'expected 5 to 7 whole numbers ETYPE NE NN NCV PR [PS [PT]]'
         else if (numbers(1) /= 1) then
@@ -300,16 +301,4 @@ contains
     if (found) call problems%add(scanner%line, 'the file goes on after the last coefficient ' // &
       'vector', 'Correct its counts')
   end subroutine refuse_rest
-
-  pure function shown(word) result(text)
-    character(*), intent(in) :: word
-    character(:), allocatable :: text
-
-    integer :: i
-
-    text = word(1:min(len(word), 40))
-    do i = 1, len(text)
-      if (iachar(text(i:i)) < 32 .or. iachar(text(i:i)) > 126) text(i:i) = '?'
-    end do
-  end function shown
 end module bext_text_reader

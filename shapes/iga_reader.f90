@@ -15,7 +15,7 @@ module iga_reader
   use text_scanner, only: scanner_type, list_type, list_done, list_ended, list_short, list_long, &
     list_bad_item, as_whole
   use extraction_mesh, only: extraction_mesh_type, problem_list, set_of_nodes, set_of_elements, &
-    set_of_sides, check_elements, check_sets, whole_number
+    set_of_sides, check_elements, check_sets, whole_number, printable
   implicit none (type, external)
   private
   public :: read_iga, side_words
@@ -23,6 +23,8 @@ module iga_reader
   !> of sides 1 to 6
   character(6), parameter :: side_words(6) = [character(6) :: 'LEFT', 'RIGHT', 'BOTTOM', 'TOP', &
     'BACK', 'FRONT']
+  character(4), parameter :: set_words(3) = ['node', 'elem', 'side']
+  integer, parameter :: set_kinds(3) = [set_of_nodes, set_of_elements, set_of_sides]
   character(*), parameter :: known_keywords = &
     'Known keywords: type, nodeN, elemN, node, belem, set, domain'
 
@@ -64,7 +66,7 @@ contains
       case ('set');    call read_set(scanner, mesh, problems)
       case ('domain'); call skip_to_keyword(scanner)
       case default
-        call problems%add(scanner%line, 'expected a keyword, found "' // shown(word) // '"', &
+        call problems%add(scanner%line, 'expected a keyword, found "' // printable(word) // '"', &
           known_keywords)
         call skip_to_keyword(scanner)
       end select
@@ -91,7 +93,7 @@ contains
     case ('thickened_surface')
       counts%least = 2
     case default
-      call problems%add(scanner%line, 'unknown type "' // shown(counts%kind) // '"', &
+      call problems%add(scanner%line, 'unknown type "' // printable(counts%kind) // '"', &
         'Known types: plane, surface, thickened_surface, volume')
     end select
   end subroutine read_type
@@ -130,7 +132,7 @@ contains
 
     call scanner%read_rest(x, n, word)
     if (len(word) > 0) then
-      call problems%add(scanner%line, '"' // shown(word) // '" is not a finite number', &
+      call problems%add(scanner%line, '"' // printable(word) // '" is not a finite number', &
         'A node is x y z w')
     else if (n /= 4) then
       call problems%add(scanner%line, 'a node with ' // whole_number(n) // ' numbers', &
@@ -165,7 +167,7 @@ contains
     call as_whole(header, whole, good)
     dp = n - 1
     if (len(word) > 0) then
-      call problems%add(line, name // ': "' // shown(word) // '" is not a finite number', &
+      call problems%add(line, name // ': "' // printable(word) // '" is not a finite number', &
         'An element begins with belem nen p q [r]')
     else if (dp < counts%least .or. dp > counts%most) then
       call problems%add(line, name // ' has ' // whole_number(max(dp, 0)) // ' degrees', &
@@ -222,7 +224,7 @@ contains
     case (list_done)
       return
     case (list_bad_item)
-      call problems%add(list%line, what // ': "' // shown(list%word) // &
+      call problems%add(list%line, what // ': "' // printable(list%word) // &
         '" is not a finite number', '')
       return
     case (list_ended)
@@ -250,7 +252,7 @@ contains
     call scanner%next_word(count_word)
     call scanner%next_word(kind_word)
     call scanner%next_word(name)
-    kind = findloc(['node', 'elem', 'side'], kind_word, dim=1)
+    kind = findloc(set_words == kind_word, .true., dim=1)
     call whole_word(count_word, n, good)
     if (.not. good .or. n < 0 .or. kind == 0 .or. len(name) == 0) then
       call problems%add(line, 'a set begins with: set N node NAME, set N side NAME, or ' // &
@@ -258,22 +260,20 @@ contains
       call skip_to_keyword(scanner)
       return
     end if
-    kind = [set_of_nodes, set_of_elements, set_of_sides](kind)
-    allocate (items(0), sides(0))
+    kind = set_kinds(kind)
     if (real(n, wp) > 0.5_wp*real(scanner%remaining() + 1, wp)) then
       call problems%add(line, 'set "' // name // '" announces more items than the file holds', &
         'Correct their number, or the file is truncated')
       call skip_to_keyword(scanner)
       return
     end if
-    deallocate (items, sides)
     allocate (items(n), sides(merge(n, 0, kind == set_of_sides)))
     do k = 1, n
       call next_item(word)
       if (len(word) == 0) exit
       call whole_word(word, items(k), good)
       if (.not. good) then
-        call problems%add(scanner%line, 'set "' // name // '": "' // shown(word) // &
+        call problems%add(scanner%line, 'set "' // name // '": "' // printable(word) // &
           '" is not the number of a node or an element', '')
         call skip_to_keyword(scanner)
         return
@@ -285,7 +285,7 @@ contains
       sides(k) = findloc(side_words == upper_case(word), .true., dim=1)
       if (sides(k) == 0) then
         call problems%add(scanner%line, 'set "' // name // '": there is no side "' // &
-          shown(word) // '"', 'Sides are LEFT (s=0), RIGHT (s=1), BOTTOM (t=0), TOP (t=1), ' // &
+          printable(word) // '"', 'Sides are LEFT (s=0), RIGHT (s=1), BOTTOM (t=0), TOP (t=1), ' // &
           'and of volumes BACK (u=0), FRONT (u=1)')
         call skip_to_keyword(scanner)
         return
@@ -299,7 +299,7 @@ contains
     call scanner%next_word(word)
     if (len(word) > 0) then
       call problems%add(scanner%line, 'set "' // name // '" announces ' // whole_number(n) // &
-        ' items and has more: "' // shown(word) // '"', '')
+        ' items and has more: "' // printable(word) // '"', '')
       return
     end if
     call mesh%add_set(name, kind, line, items, sides)
@@ -391,20 +391,6 @@ contains
       end if
     end subroutine compare
   end subroutine compare_counts
-
-  pure function shown(word) result(text)
-    !! A word of a file that may be anything.
-    character(*), intent(in) :: word
-    character(:), allocatable :: text
-
-    integer :: i
-
-    text = word(1:min(len(word), 40))
-    do i = 1, len(text)
-      if (iachar(text(i:i)) < 32 .or. iachar(text(i:i)) > 126) text(i:i) = '?'
-    end do
-    if (len(word) > 40) text = text // '...'
-  end function shown
 
   pure function upper_case(word) result(upper)
     character(*), intent(in) :: word

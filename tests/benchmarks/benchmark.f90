@@ -16,8 +16,8 @@ program benchmark
   do dimension = 2, 3
     do p = 1, merge(4, 3, dimension == 2)
       call measure_solid_kernel(dimension, p)
-      call measure_assembly(trim(scratch), dimension, 'N', p, merge(24, 6, dimension == 2))
       call measure_assembly(trim(scratch), dimension, 'L', p, merge(24, 6, dimension == 2))
+      call measure_assembly(trim(scratch), dimension, 'N', p, merge(24, 6, dimension == 2))
     end do
   end do
   do dimension = 2, 3

@@ -97,13 +97,16 @@ contains
 
   subroutine time_assembly(run, group, row, basis)
     type(deck_run), intent(inout), target :: run
-    character(*), intent(in) :: group, row, basis
+    character(*), intent(in) :: group, row
+    character(1), intent(in) :: basis
     type(stopwatch_type) :: watch
     real(wp) :: stored, dissipated, none(0, 0)
     integer :: pass, status, place, tasks(2)
     character(*), parameter :: what(2) = [character(20) :: 'residual', 'residual and tangent']
 
     tasks = [task_residual, task_tangent]
+    stored = 0
+    dissipated = 0
     associate (eq => run%eq)
       call form_equilibrium(run%model, eq, .true., none, [logical ::], run%clock, status)
       if (status /= ok) error stop 'model_benchmarks: no tangent'
@@ -115,7 +118,7 @@ contains
           call assemble_bulk(run%model, eq%bulk, tasks(pass), eq%u, eq%un, none, [logical ::], eq%time, 1.0_wp, eq%system, &
                              eq%f, stored, dissipated, status, place)
         end do
-        call put(group, row, trim(what(pass))//', assembled, '//basis//' [us]', &
+        call put(group, row, trim(what(pass))//', assembled, '//trim(merge('NURBS   ', 'Lagrange', basis == 'N'))//' [us]', &
                  1.0e6_wp*watch%best/run%model%mesh%ne)
       end do
     end associate

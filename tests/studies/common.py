@@ -53,12 +53,21 @@ def history(path):
     return {name: [float(row[name]) for row in rows] for name in rows[0]} if rows else {}
 
 
-def table(name, header, rows):
-    """Put a table between the README's marks `<!-- table NAME -->` and `<!-- end -->`, and print it."""
+def markdown(header, rows):
     lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
     lines += ["| " + " | ".join(str(item) for item in row) + " |" for row in rows]
-    text = "\n".join(lines)
+    return "\n".join(lines)
+
+
+def table(name, header, rows):
+    """Put a table between the README's marks `<!-- table NAME -->` and `<!-- end -->`, and print it."""
+    text = markdown(header, rows)
     print(text, flush=True)
+    place(name, text)
+
+
+def place(name, text):
+    """Put text between the README's marks of a name."""
     readme = root / "README.md"
     old = readme.read_text() if readme.exists() else ""
     marks = re.compile(rf"(<!-- table {re.escape(name)} -->\n).*?(<!-- end -->)", re.S)
