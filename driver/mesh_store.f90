@@ -19,7 +19,7 @@ module mesh_store
   use status_codes, only: ok, status_text
   use hdf5_store, only: hdf5_store_type
   use extraction_mesh, only: extraction_mesh_type, problem_list, check_elements, check_sets, &
-    whole_number, set_of_nodes, set_of_sides
+    whole_number, set_of_nodes, set_of_sides, largest_degree
   implicit none (type, external)
   private
   public :: write_mesh_store, read_mesh_store, is_mesh_store
@@ -170,7 +170,7 @@ contains
       call problems%add(0, 'arrays of the elements differ in length', '')
       return
     end if
-    if (any(dp < 1 .or. dp > 3) .or. any(degree < 0 .or. degree > 100) .or. &
+    if (any(dp < 1 .or. dp > 3) .or. any(degree < 0 .or. degree > largest_degree) .or. &
         any(op < 1 .or. op > size(rows)) .or. any(rows < 1) .or. any(columns < 1)) then
       call problems%add(0, 'a dimension, a degree or an operator is out of range', '')
       return

@@ -14,6 +14,11 @@ module patch_commands
   use nurbs_patch, only: patch_extraction, side_of_grid
   use lagrange_mesh, only: break_list, patch_breaks, lagrange_mesh_nodes, lagrange_mesh_elements
   use patch_lines, only: patch_draft, carry_out_line
+  use extraction_set, only: extraction_set_type
+  use t_spline, only: t_spline_type, t_elements_type, create_t_spline, t_spline_extraction
+  use t_sweep, only: swept_points, swept_extraction
+  use t_patch_lines, only: report_suitability
+  use status_codes, only: ok, status_text
   implicit none (type, external)
   private
   public :: read_patch
@@ -55,6 +60,7 @@ contains
     end do
     if (log%error_count() == error_count .and. .not. new%is_built) call command%add_error(log, &
       'the patch has no control points', 'Give DEGRee, KNOTs for each direction, then POINts')
+    if (log%error_count() == error_count .and. new%is_t) call report_suitability(command, new%mesh, log)
     if (log%error_count() > error_count) then
       ! its sets are known all the same, so that there is no second message for each use of them
       if (old == 0) call add_sets(model, name, in_place(command%at), 3, 1, [0, 0, 0])
@@ -62,6 +68,10 @@ contains
       return
     end if
     call begin_origin(draft, command, 'PATCh', name)
+    if (new%is_t) then
+      call add_t_spline(new, name, material, body, command, model, draft, log)
+      return
+    end if
     call add_to_mesh(new, name, material, body, command, model, draft)
   end subroutine read_patch
 
@@ -95,6 +105,63 @@ contains
     call draft%note_elements(first, model%mesh%ne, material, body, command%at)
     call add_sets(model, name, in_place(command%at), new%patch%dp, first, new%patch%elements())
   end subroutine add_to_mesh
+
+  subroutine add_t_spline(new, name, material, body, command, model, draft, log)
+    !! A locally refined surface, or the solid swept by it.
+    type(patch_draft), intent(in) :: new
+    character(*), intent(in) :: name
+    integer, intent(in) :: material, body
+    type(record), intent(in) :: command
+    type(model_type), intent(inout) :: model
+    type(draft_type), intent(inout) :: draft
+    type(message_log), intent(inout) :: log
+    type(t_spline_type) :: spline
+    type(t_elements_type) :: elements
+    type(extraction_set_type), target :: flat
+    real(wp), allocatable :: points(:, :)
+    integer :: a, e, k, first, first_node, layers, side, status
+
+    first = model%mesh%ne + 1
+    first_node = draft%nn + 1
+    layers = 1
+    call create_t_spline(new%mesh, new%patch, spline, status)
+    if (status == ok .and. allocated(new%sweep)) then
+      layers = new%sweep%knots%elements()
+      allocate (points(4, spline%n*new%sweep%knots%functions()))
+      call swept_points(new%sweep, spline%cp, points)
+      call t_spline_extraction(new%mesh, spline, [(a, a=1, spline%n)], flat, elements)
+      call swept_extraction(new%sweep, flat, spline%n, [(a, a=first_node, first_node - 1 + size(points, 2))], &
+        model%mesh, k, status)
+    else if (status == ok) then
+      allocate (points, source=spline%cp)
+      call t_spline_extraction(new%mesh, spline, [(a, a=first_node, first_node - 1 + spline%n)], model%mesh, elements)
+    end if
+    if (status /= ok) then
+      call command%add_error(log, status_text(status), '')
+      return
+    end if
+    do a = 1, size(points, 2)
+      call draft%set_node(first_node + a - 1, points(1:model%ndm, a), points(4, a))
+    end do
+    call draft%note_elements(first, model%mesh%ne, material, body, command%at)
+    call add_set(model, name, in_place(command%at), set_elements, [(e, e=first, model%mesh%ne)], [integer ::])
+    do side = 1, 4
+      call add_surface(side, [(elements%side(side)%id(1:elements%side(side)%n) - elements%first + first &
+        + elements%ne*(k - 1), k=1, layers)])
+    end do
+    if (.not. allocated(new%sweep)) return
+    call add_surface(5, [(first + e - 1, e=1, elements%ne)])
+    call add_surface(6, [(first + elements%ne*(layers - 1) + e - 1, e=1, elements%ne)])
+
+  contains
+
+    subroutine add_surface(side, items)
+      integer, intent(in) :: side, items(:)
+
+      call add_set(model, name // '.' // trim(side_names(side)), in_place(command%at), set_surface, items, &
+        spread(side, 1, size(items)))
+    end subroutine add_surface
+  end subroutine add_t_spline
 
   subroutine add_sets(model, name, place, dp, first, n)
     !! The elements of a patch and its sides.

@@ -12,6 +12,9 @@ module patch_lines
   use nurbs_refinement, only: elevate_degree, insert_knots, subdivide
   use grading, only: uniform_breaks, graded_breaks, symmetric_breaks, fitted_breaks
   use lagrange, only: equispaced, lobatto
+  use t_mesh, only: t_mesh_type
+  use t_sweep, only: sweep_type
+  use t_patch_lines, only: begin_t_mesh, carry_out_t_line, t_line_words
   implicit none (type, external)
   private
   public :: patch_draft, carry_out_line
@@ -27,6 +30,9 @@ module patch_lines
     logical :: is_lagrange = .false.
     integer :: degree(3) = 0                !! of the Lagrange elements
     integer :: nodes = equispaced
+    logical :: is_t = .false.               !! refined locally or swept
+    type(t_mesh_type) :: mesh
+    type(sweep_type), allocatable :: sweep
   end type patch_draft
 
 contains
@@ -39,6 +45,7 @@ contains
     type(patch_draft), intent(inout) :: new
     type(message_log), intent(inout) :: log
     character(4) :: word
+    integer :: error_count
 
     word = rec%key(1)
     select case (word)
@@ -48,7 +55,7 @@ contains
           'The order is DEGRee, KNOTs for each direction, POINts, then refinements')
         return
       end if
-    case ('elev', 'inse', 'subd', 'lagr', 'rota', 'tran', 'scal')
+    case ('elev', 'inse', 'subd', 'lagr', 'rota', 'tran', 'scal', 'refi', 'rows', 'spli', 'suit', 'swee')
       if (.not. new%is_built) then
         call rec%add_error(log, rec%word(1) // ' before the control points', &
           'The order is DEGRee, KNOTs for each direction, POINts, then refinements')
@@ -56,6 +63,14 @@ contains
       else if (new%is_lagrange .and. any(word == ['elev', 'inse', 'subd', 'lagr'])) then
         call rec%add_error(log, rec%word(1) // ' after LAGRange', &
           'Refine the patch before it becomes Lagrange elements')
+        return
+      else if (new%is_t .and. any(word == ['elev', 'inse', 'subd', 'lagr'])) then
+        call rec%add_error(log, rec%word(1) // ' after local refinement', &
+          'Elevate and subdivide the patch first, then refine it locally')
+        return
+      else if (new%is_lagrange .and. any(word == ['refi', 'rows', 'spli', 'suit', 'swee'])) then
+        call rec%add_error(log, rec%word(1) // ' of Lagrange elements', &
+          'T-splines and sweeps are made from the patch: remove LAGRange')
         return
       end if
     end select
@@ -68,11 +83,16 @@ contains
     case ('subd'); call read_subdivision(rec, new, log)
     case ('lagr'); call read_lagrange(rec, new, log)
     case ('rota', 'tran', 'scal'); call move_points(rec, ndm, new%patch, log)
+    case ('refi', 'rows', 'spli', 'suit', 'swee')
+      error_count = log%error_count()
+      if (.not. new%is_t) call begin_t_mesh(rec, new%patch, new%mesh, log)
+      new%is_t = log%error_count() == error_count
+      if (new%is_t) call carry_out_t_line(rec, ndm, new%patch, new%mesh, new%sweep, log)
     case default
       call rec%add_error(log, 'unknown line ' // quoted(rec%word(1)), &
         known_names([character(9) :: 'DEGRee', &
         'KNOTs', 'POINts', 'ELEVate', 'INSErt', 'SUBDivide', 'LAGRange', 'ROTAte', 'TRANslate', &
-        'SCALe'], 'lines'))
+        'SCALe', t_line_words], 'lines'))
     end select
   end subroutine carry_out_line
 

@@ -4,7 +4,7 @@ module bext_draft
   !! is what is kept until all vectors are there.
   use kinds, only: wp
   use growing_arrays, only: make_room
-  use extraction_mesh, only: extraction_mesh_type, problem_list, whole_number
+  use extraction_mesh, only: extraction_mesh_type, problem_list, largest_degree, whole_number
   implicit none (type, external)
   private
   public :: bext_draft_type, element_block, block_problem
@@ -48,8 +48,8 @@ contains
     else if (block%functions /= block%vectors) then
       fact = 'elements have ' // whole_number(block%functions) // ' functions and ' // &
         whole_number(block%vectors) // ' coefficient vectors'
-    else if (block%degree(1) < 1 .or. any(block%degree > 100)) then
-      fact = 'degrees must lie between 1 and 100'
+    else if (block%degree(1) < 1 .or. any(block%degree > largest_degree)) then
+      fact = 'degrees must lie between 1 and ' // whole_number(largest_degree)
     else if (block%degree(3) > 0 .and. block%degree(2) < 1) then
       fact = 'there is a third degree without a second'
     end if
@@ -112,10 +112,6 @@ contains
         n = block%functions
         dp = count(block%degree > 0)
         nb = product(block%degree(1:dp) + 1)
-        if (allocated(ce)) then
-          if (size(ce, 1) /= n .or. size(ce, 2) /= nb) deallocate (ce)
-        end if
-        if (.not. allocated(ce)) allocate (ce(n,nb))
         at = self%first(e)
         good = .true.
         do a = 1, n
@@ -131,13 +127,21 @@ contains
               whole_number(self%vector_size(v)) // ' components', 'Its degrees need ' // &
               whole_number(nb))
           else
-            ce(a,:) = self%components(self%vector_first(v)+1:self%vector_first(v)+nb)
             cycle
           end if
           good = .false.
           exit
         end do
-        if (good) call mesh%add_element(block%degree(1:dp), self%nodes(at+1:at+n), ce, self%line(e))
+        if (.not. good) cycle
+        if (allocated(ce)) then
+          if (size(ce, 1) /= n .or. size(ce, 2) /= nb) deallocate (ce)
+        end if
+        if (.not. allocated(ce)) allocate (ce(n,nb))
+        do a = 1, n
+          v = self%vectors(at+a)
+          ce(a,:) = self%components(self%vector_first(v)+1:self%vector_first(v)+nb)
+        end do
+        call mesh%add_element(block%degree(1:dp), self%nodes(at+1:at+n), ce, self%line(e))
       end associate
     end do
   end subroutine build

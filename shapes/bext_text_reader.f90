@@ -222,7 +222,8 @@ contains
       if (blocks(i)%functions > scanner%remaining()) then
         good = .false.
         call problems%add(blocks(i)%line, 'element block ' // whole_number(i) // &
-          ' announces more numbers than the file holds behind it', '')
+          ' announces more numbers than the file holds behind it', &
+          'Correct it, or the file is truncated')
         return
       end if
       allocate (nodes(blocks(i)%functions), vectors(blocks(i)%functions))
@@ -273,7 +274,8 @@ contains
       if (good) good = real(blocks(1,i), wp)*blocks(2,i) <= 0.5_wp*(scanner%remaining() + 1)
       if (.not. good) then
         call problems%add(line, 'block ' // whole_number(i) // ' of coefficient vectors ' // &
-          'announces more numbers than the file holds behind it, or none', '')
+          'announces more numbers than the file holds behind it, or none', &
+          'Correct it, or the file is truncated')
         return
       end if
     end do

@@ -8,12 +8,13 @@ module extraction_mesh
   implicit none (type, external)
   private
   public :: extraction_mesh_type, mesh_set, file_problem, problem_list
-  public :: set_of_nodes, set_of_elements, set_of_sides
+  public :: set_of_nodes, set_of_elements, set_of_sides, largest_degree
   public :: check_elements, check_sets, repeated_elements, used_by_elements, names_a_node_twice, &
     whole_number, printable
 
   integer, parameter :: set_of_nodes = 1, set_of_elements = 2, set_of_sides = 3
   integer, parameter :: most_problems = 50      !! of a file that are kept
+  integer, parameter :: largest_degree = 30     !! what is above is taken for a fault of the file
 
   type :: mesh_set
     character(:), allocatable :: name

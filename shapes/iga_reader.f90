@@ -15,7 +15,7 @@ module iga_reader
   use text_scanner, only: scanner_type, list_type, list_done, list_ended, list_short, list_long, &
     list_bad_item, as_whole
   use extraction_mesh, only: extraction_mesh_type, problem_list, set_of_nodes, set_of_elements, &
-    set_of_sides, check_elements, check_sets, whole_number, printable
+    set_of_sides, largest_degree, check_elements, check_sets, whole_number, printable
   implicit none (type, external)
   private
   public :: read_iga, side_words
@@ -173,9 +173,11 @@ contains
       call problems%add(line, name // ' has ' // whole_number(max(dp, 0)) // ' degrees', &
         'Elements of type ' // counts%kind // ' begin with belem nen p q' // &
         trim(merge('    ', ' [r]', counts%most == 2)))
-    else if (any(.not. good(1:n)) .or. any(whole(1:n) < 1) .or. any(whole(2:n) > 100)) then
+    else if (any(.not. good(1:n)) .or. any(whole(1:n) < 1) .or. &
+      any(whole(2:n) > largest_degree)) then
       call problems%add(line, name // &
-        ' needs whole numbers of functions (positive) and degrees (1 to 100)', '')
+        ' needs whole numbers of functions (positive) and degrees (1 to ' // &
+        whole_number(largest_degree) // ')', '')
     else
       nb = product(real(whole(2:n) + 1, wp))
       if (whole(1) * (nb + 1) > 0.5_wp * real(scanner%remaining() + 1, wp)) then
@@ -198,8 +200,8 @@ contains
             if (list%status /= list_done) exit
             ce(a,:) = row
           end do
-          call report_list(list, name // ', row ' // whole_number(min(a, size(nodes))) // ' of ' // &
-            whole_number(size(nodes)), 'coefficients', size(row), problems)
+          call report_list(list, name // ', row ' // whole_number(min(a, size(nodes))) // &
+            ' of ' // whole_number(size(nodes)), 'coefficients', size(row), problems)
           if (list%status == list_done .and. all(good)) then
             call mesh%add_element(whole(2:n), nodes, ce, line)
             counts%lost_elements = counts%lost_elements - 1
@@ -285,8 +287,8 @@ contains
       sides(k) = findloc(side_words == upper_case(word), .true., dim=1)
       if (sides(k) == 0) then
         call problems%add(scanner%line, 'set "' // name // '": there is no side "' // &
-          printable(word) // '"', 'Sides are LEFT (s=0), RIGHT (s=1), BOTTOM (t=0), TOP (t=1), ' // &
-          'and of volumes BACK (u=0), FRONT (u=1)')
+          printable(word) // '"', 'Sides are LEFT (s=0), RIGHT (s=1), BOTTOM (t=0), TOP (t=1)' // &
+          ', and of volumes BACK (u=0), FRONT (u=1)')
         call skip_to_keyword(scanner)
         return
       end if

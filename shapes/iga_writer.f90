@@ -104,6 +104,7 @@ contains
     type(buffer_type) :: out
     character(4) :: word
     character(16) :: kind
+    integer(i8), allocatable :: first(:), last(:)   !! where the rows of an operator stand (nop)
     integer(i8) :: at
     integer :: a, b, e, i, k, nen, op
 
@@ -121,6 +122,7 @@ contains
       call out%put_number(mesh%w(a))
       call out%put(new_line('a'))
     end do
+    allocate (first(mesh%elements%nop), last(mesh%elements%nop), source=0_i8)
     do e = 1, mesh%elements%ne
       nen = mesh%elements%nen(e)
       call out%put('belem')
@@ -134,6 +136,11 @@ contains
       end do
       call out%put(new_line('a'))
       op = mesh%elements%operator_of(e)
+      if (last(op) > 0) then
+        call out%put(out%text(first(op):last(op)))
+        cycle
+      end if
+      first(op) = out%n + 1
       do a = 1, nen
         do b = 1, mesh%elements%nb(e)
           at = mesh%elements%op_ptr(op) + (a - 1) + int(nen, i8)*(b - 1)
@@ -141,6 +148,7 @@ contains
         end do
         call out%put(new_line('a'))
       end do
+      last(op) = out%n
     end do
     do i = 1, size(mesh%sets)
       associate (set => mesh%sets(i))
@@ -180,7 +188,7 @@ contains
     character(:), allocatable :: longer
     integer(i8) :: needed
 
-    needed = self%n + len(piece)
+    needed = self%n + len(piece, i8)
     if (.not. allocated(self%text)) allocate (character(65536_i8) :: self%text)
     if (needed > len(self%text, i8)) then
       allocate (character(2*needed) :: longer)
@@ -199,12 +207,11 @@ contains
   end subroutine put_whole
 
   pure subroutine put_number(self, x)
-    !! A blank and 15 to 17 digits, as many as it takes to read the same bits back.
+    !! A blank and 15 digits, or 17 where 15 do not read the same bits back.
     class(buffer_type), intent(inout) :: self
     real(wp), intent(in) :: x
 
-    character(11), parameter :: forms(3) = [character(11) :: '(es26.14e3)', '(es26.15e3)', &
-      '(es26.16e3)']
+    character(11), parameter :: forms(2) = ['(es26.14e3)', '(es26.16e3)']
     character(26) :: buffer
     real(wp) :: again
     integer :: i, used
