@@ -18,7 +18,9 @@ module iga_writer
     character(:), allocatable :: text
     integer(i8) :: n = 0
   contains
+    procedure :: reserve
     procedure :: put
+    procedure :: put_again
     procedure :: put_number
     procedure :: put_whole
   end type buffer_type
@@ -137,7 +139,7 @@ contains
       call out%put(new_line('a'))
       op = mesh%elements%operator_of(e)
       if (last(op) > 0) then
-        call out%put(out%text(first(op):last(op)))
+        call out%put_again(first(op), last(op))
         cycle
       end if
       first(op) = out%n + 1
@@ -181,23 +183,37 @@ contains
     end function is_written
   end subroutine write_iga
 
-  pure subroutine put(self, piece)
+  pure subroutine reserve(self, needed)
     class(buffer_type), intent(inout) :: self
-    character(*), intent(in) :: piece
+    integer(i8), intent(in) :: needed                  !! characters that there is room for then
 
     character(:), allocatable :: longer
-    integer(i8) :: needed
 
-    needed = self%n + len(piece, i8)
     if (.not. allocated(self%text)) allocate (character(65536_i8) :: self%text)
     if (needed > len(self%text, i8)) then
       allocate (character(2*needed) :: longer)
       longer(1:self%n) = self%text(1:self%n)
       call move_alloc(longer, self%text)
     end if
-    self%text(self%n+1:needed) = piece
-    self%n = needed
+  end subroutine reserve
+
+  pure subroutine put(self, piece)
+    class(buffer_type), intent(inout) :: self
+    character(*), intent(in) :: piece
+
+    call self%reserve(self%n + len(piece, i8))
+    self%text(self%n+1:self%n+len(piece, i8)) = piece
+    self%n = self%n + len(piece, i8)
   end subroutine put
+
+  pure subroutine put_again(self, first, last)
+    class(buffer_type), intent(inout) :: self
+    integer(i8), intent(in) :: first, last             !! characters that are there already
+
+    call self%reserve(self%n + last - first + 1)
+    self%text(self%n+1:self%n+last-first+1) = self%text(first:last)
+    self%n = self%n + last - first + 1
+  end subroutine put_again
 
   pure subroutine put_whole(self, i)
     class(buffer_type), intent(inout) :: self
