@@ -8,7 +8,7 @@ failures=0
 fail() { echo "$*"; failures=$((failures + 1)); }
 
 sed 's/^BATCh/BATCh\n  PRINt/' "$deck" >printed.inp
-"$BEZEL" printed.inp last=60 --out out >out.txt || fail "exit status $?"
+"$BEZEL" printed.inp basis=N last=60 --out out >out.txt || fail "exit status $?"
 awk -F, '
   NR == 1 { for (i = 1; i <= NF; i++) column[$i] = i; next }
   { cutbacks += $column["cutbacks"]; rows++ }

@@ -4,7 +4,7 @@
 set -u
 deck=$BEZEL_SOURCE/inputs/ironing.inp
 kills=${1-3}
-arguments=("$deck" p=2 last=60)
+arguments=("$deck" basis=N p=2 last=60)
 failures=0
 
 "$BEZEL" "${arguments[@]}" --out whole >whole.txt || exit 1
@@ -36,6 +36,6 @@ for trial in $(seq "$kills"); do
   cmp -s whole/fields.pvd broken/fields.pvd || { echo "trial $trial: fields.pvd differs"; failures=1; }
 done
 # other parameters are refused with status 2
-"$BEZEL" "$deck" p=3 last=60 --out whole --restart >refused.txt 2>&1
+"$BEZEL" "$deck" basis=N p=3 last=60 --out whole --restart >refused.txt 2>&1
 [ $? -eq 2 ] || { echo "a restart with another parameter must be refused with status 2"; failures=1; }
 exit $failures

@@ -129,12 +129,12 @@ contains
     character(*), intent(in) :: project, scratch
     integer, intent(in) :: mesh
     type(deck_run), target :: run
-    character(8) :: settings(1)
+    character(8) :: settings(2)
     character(:), allocatable :: row
     real(wp) :: none(0, 0)
     integer :: status, step
 
-    settings(1) = 'mesh='//text(mesh)
+    settings = [character(8) :: 'mesh='//text(mesh), 'basis=N']
     call run%open_file(project//'/inputs/ironing.inp', settings)
     if (run%deck_errors > 0) error stop 'model_benchmarks: '//run%fault
     do step = 1, 3

@@ -1,15 +1,20 @@
 """What the studies share: running decks, reading histories, writing tables and figures where the README shows them."""
 import csv
+import json
 import os
 import pathlib
 import re
 import resource
 import subprocess
+import sys
 
 root = pathlib.Path(os.environ["BEZEL_ROOT"])
 build = pathlib.Path(os.environ["BEZEL_BUILD"])
 work = build / "studies"
 pictures = root / "inputs" / "pictures"
+reuse = "--reuse" in sys.argv  # runs that an earlier call of the study has finished are not repeated
+if reuse:
+    sys.argv.remove("--reuse")
 
 
 class Run:
@@ -19,14 +24,17 @@ class Run:
         self.folder = work / label
         work.mkdir(parents=True, exist_ok=True)
         arguments = [f"{name}={value}" for name, value in parameters.items()]
-        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        done = subprocess.run([build / "bezel", root / deck, *arguments, "--out", self.folder],
-                              capture_output=True, text=True, cwd=work)
-        # processor time: what else runs on the machine disturbs it little
-        self.seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-        self.status = done.returncode
-        self.log = done.stdout
-        self.errors = done.stderr
+        note = work / f"{label}.json"
+        if reuse and note.exists():
+            self.seconds, self.status, self.log, self.errors = json.loads(note.read_text())
+        else:
+            before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+            done = subprocess.run([build / "bezel", root / deck, *arguments, "--out", self.folder],
+                                  capture_output=True, text=True, cwd=work)
+            # processor time: what else runs on the machine disturbs it little
+            self.seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+            self.status, self.log, self.errors = done.returncode, done.stdout, done.stderr
+            note.write_text(json.dumps([self.seconds, self.status, self.log, self.errors]))
         self.history = history(self.folder / "history.csv") if (self.folder / "history.csv").exists() else {}
 
     def share(self, phase):

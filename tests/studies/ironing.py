@@ -9,7 +9,8 @@ import matplotlib.pyplot as plt
 import common
 from ironing_measures import Slide, dofs
 
-bases = ["L1", "L2", "L3", "L4", "N2", "N3", "N4"]
+every = ["L1", "L2", "L3", "L4", "N2", "N3", "N4", "T3"]
+bases = every
 meshes = [1, 2, 3]
 for argument in sys.argv[1:]:
     name, value = argument.split("=")
@@ -19,7 +20,7 @@ for argument in sys.argv[1:]:
         meshes = [int(item) for item in value.split(",")]
     else:
         sys.exit(f"unknown argument {argument}; known: bases=, meshes=")
-partial = bases != ["L1", "L2", "L3", "L4", "N2", "N3", "N4"] or meshes != [1, 2, 3]
+partial = bases != every or meshes != [1, 2, 3]
 
 
 rows, slides = [], {}
@@ -51,7 +52,7 @@ if partial:
     sys.exit()
 common.table("ironing", header, rows)
 
-colours = dict(zip(bases, ["#bbbbbb", "#e0a030", "#d06020", "#a01010", "#80b0e0", "#3070c0", "#103080"]))
+colours = dict(zip(bases, ["#bbbbbb", "#e0a030", "#d06020", "#a01010", "#80b0e0", "#3070c0", "#103080", "#10a040"]))
 for mesh in meshes:
     figure, axes = plt.subplots(1, 2, figsize=(11, 4))
     for basis in bases:
@@ -72,7 +73,7 @@ for basis in bases:
     if not done:
         continue
     n = [item[0] for item in done]
-    style = dict(marker="o" if basis[0] == "N" else "s", color=colours[basis], label=basis)
+    style = dict(marker={"L": "s", "N": "o", "T": "D"}[basis[0]], color=colours[basis], label=basis)
     axes[0].loglog(n, [item[1].smooth[0] for item in done], **style)
     axes[1].loglog(n, [item[1].smooth[1] for item in done], **style)
     axes[2].loglog([item[2].seconds for item in done], [item[1].smooth[0] for item in done], **style)
