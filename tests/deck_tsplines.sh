@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Decks of T-splines against expected numbers: patch tests, merged patches.
+set -u
+failures=0
+
+solve() { # label deck [name=value ...]
+  local label=$1 deck=$2 status
+  shift 2
+  "$BEZEL" "$BEZEL_SOURCE/inputs/$deck.inp" "$@" --out "$label.out" >"$label.txt" 2>&1 </dev/null
+  status=$?
+  [ $status -eq 0 ] && return
+  echo "$label: exit status $status"
+  cat "$label.txt"
+  failures=$((failures + 1))
+}
+
+expect() { # label column expected tolerance: last row of the history
+  awk -F, -v name="$2" -v expected="$3" -v tolerance="$4" -v label="$1" '
+    NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i }
+    { found = $column }
+    END {
+      if (!column || NR < 2) { print label ": no column or row for " name; exit 1 }
+      error = found - expected
+      if (error < 0) error = -error
+      if (!(error <= tolerance)) {
+        print label ": " name " expected " expected " found " found " tolerance " tolerance
+        exit 1
+      }
+    }' "$1.out/history.csv" || failures=$((failures + 1))
+}
+
+# Patch tests: values of 1e-2, forces of 10; rounding times the condition of the systems, and what the Gauss rule leaves.
+for refine in CELLs SIDE ROWS SPLIt NONE; do
+  solve "plane_$refine" verify/patch_t refine=$refine
+  expect "plane_$refine" corner_ux 0.014 1e-13
+  expect "plane_$refine" corner_uy 0.003 1e-13
+  expect "plane_$refine" supports_rx 0 1e-11
+  expect "plane_$refine" supports_ry 0 1e-11
+  expect "plane_$refine" elastic 0.09375 1e-12
+done
+for refine in CELLs ROWS NONE; do
+  solve "space_$refine" verify/patch_t_3d refine=$refine
+  expect "space_$refine" corner_ux 0.0134 1e-12
+  expect "space_$refine" corner_uy 0.0083 1e-12
+  expect "space_$refine" corner_uz -0.004 1e-12
+  expect "space_$refine" supports_rx 0 1e-10
+  expect "space_$refine" supports_ry 0 1e-10
+  expect "space_$refine" supports_rz 0 1e-10
+  expect "space_$refine" elastic 0.08105769230769231 1e-12
+done
+
+echo "$failures failures"
+[ $failures -eq 0 ]
