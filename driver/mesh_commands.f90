@@ -10,6 +10,7 @@ module mesh_commands
   use node_commands, only: read_header, read_coordinates
   use element_commands, only: read_elements, read_operator, read_bezier
   use patch_commands, only: read_patch
+  use merge_commands, only: read_merge
   use spline_commands, only: read_spline_file, read_export
   use set_commands, only: read_set, read_tie
   use material_commands, only: read_material
@@ -84,6 +85,7 @@ contains
     case ('oper'); call read_operator(deck, rec, model, draft, log)
     case ('bezi'); call read_bezier(deck, rec, model, draft, log)
     case ('patc'); call read_patch(deck, rec, model, draft, log)
+    case ('merg'); call read_merge(deck, rec, model, draft, log)
     case ('t-sp'); call read_spline_file(deck, rec, model, draft, log)
     case ('tie');  call read_tie(rec, draft, log)
     case ('set');  call read_set(rec, draft, log)

@@ -4,6 +4,7 @@ module mesh_completion
   use messages, only: message_log, whole_text
   use model_data, only: model_type
   use mesh_draft, only: draft_type
+  use merge_commands, only: check_parts
   use set_commands, only: resolve_ties, resolve_sets
   use spline_commands, only: follow_tied_nodes
   use mesh_exports, only: check_exports
@@ -24,6 +25,7 @@ contains
     logical :: all_materials
 
     error_count = log%error_count()
+    call check_parts(model, draft, log)
     model%nn = draft%nn
     model%x = draft%x(:, 1:draft%nn)
     model%w = draft%w(1:draft%nn)

@@ -3,15 +3,16 @@ module mesh_draft
   !! carried out at END, because it names nodes and sets that may follow: ties, sets, conditions,
   !! loads, interfaces, histories.
   use kinds, only: wp
-  use messages, only: deck_place, string
+  use messages, only: deck_place, string, lower_case
   use model_data, only: model_type, surface_load_type, history_request
   use growing_arrays, only: make_room
+  use nurbs_patch, only: nurbs_patch_type
   implicit none (type, external)
   private
   public :: append_value
   public :: draft_type, element_origin, set_request, value_request, tie_request, load_request, &
     interface_request, &
-    history_draft, link_request, named_operator
+    history_draft, link_request, named_operator, patch_part
 
   type :: element_origin
     !! The data set that elements come from.
@@ -81,6 +82,15 @@ module mesh_draft
     integer :: op = 0                         !! its number in the extraction set; 0: it was faulty
   end type named_operator
 
+  type :: patch_part
+    !! A patch with the line PARTial: not in the mesh, to be merged with another one.
+    type(deck_place) :: at
+    character(:), allocatable :: name
+    type(nurbs_patch_type) :: patch
+    integer :: material = 1, body = 1         !! as in the deck
+    logical :: is_taken = .false.             !! by a MERGe
+  end type patch_part
+
   type :: draft_type
     type(deck_place) :: header                  !! of FEAP
     type(deck_place) :: last_at                 !! of the node defined last
@@ -96,6 +106,7 @@ module mesh_draft
     logical :: has_lost_file = .false.          !! a mesh file has errors, its sets are unknown
     type(element_origin), allocatable :: origins(:)
     type(named_operator), allocatable :: operators(:)
+    type(patch_part), allocatable :: parts(:)
     type(set_request), allocatable :: sets(:)
     type(tie_request), allocatable :: ties(:)
     type(value_request), allocatable :: boundary(:), displacement(:), force(:), proportional(:)
@@ -112,6 +123,8 @@ module mesh_draft
     procedure :: element_place
     procedure :: element_name
     procedure :: set_names_so_far
+    procedure :: add_part
+    procedure :: find_part
   end type draft_type
 
 contains
@@ -121,6 +134,7 @@ contains
     type(model_type), intent(inout) :: model
 
     allocate (self%x(model%ndm, 0), self%w(0), self%defined(0))
+    allocate (self%parts(0))
     allocate (self%origins(0), self%operators(0), self%sets(0), self%ties(0), self%links(0), &
       self%loads(0), &
       self%interfaces(0), self%histories(0))
@@ -211,6 +225,32 @@ contains
       names(n + i)%s = self%sets(i)%name
     end do
   end function set_names_so_far
+
+  subroutine add_part(self, part)
+    class(draft_type), intent(inout) :: self
+    type(patch_part), intent(in) :: part
+    type(patch_part), allocatable :: larger(:)
+    integer :: i, n
+
+    n = size(self%parts)
+    allocate (larger(n + 1))
+    do i = 1, n
+      larger(i) = self%parts(i)
+    end do
+    larger(n + 1) = part
+    call move_alloc(larger, self%parts)
+  end subroutine add_part
+
+  integer function find_part(self, name)
+    !! Index of the patch of this name; 0 if there is none.
+    class(draft_type), intent(in) :: self
+    character(*), intent(in) :: name
+
+    do find_part = 1, size(self%parts)
+      if (lower_case(self%parts(find_part)%name) == lower_case(name)) return
+    end do
+    find_part = 0
+  end function find_part
 
   subroutine append_value(list, n, request)
     type(value_request), allocatable, intent(inout) :: list(:)

@@ -8,15 +8,14 @@ module patch_commands
   use deck_reader, only: deck_type => deck
   use model_data, only: model_type, set_elements, set_surface
   use model_sets, only: add_set, find_set
-  use mesh_draft, only: draft_type
+  use mesh_draft, only: draft_type, patch_part
   use data_lines, only: next_line
   use element_commands, only: element_options, begin_origin
   use nurbs_patch, only: patch_extraction, side_of_grid
   use lagrange_mesh, only: break_list, patch_breaks, lagrange_mesh_nodes, lagrange_mesh_elements
   use patch_lines, only: patch_draft, carry_out_line
-  use extraction_set, only: extraction_set_type
-  use t_spline, only: t_spline_type, t_elements_type, create_t_spline, t_spline_extraction
-  use t_sweep, only: swept_points, swept_extraction
+  use t_spline, only: t_spline_type, create_t_spline
+  use t_bodies, only: t_body, add_t_body
   use t_patch_lines, only: report_suitability
   use status_codes, only: ok, status_text
   implicit none (type, external)
@@ -39,6 +38,7 @@ contains
     character(:), allocatable :: name
     integer :: body, material, error_count, old
     logical :: more
+    character(:), allocatable :: taken_at
 
     error_count = log%error_count()
     material = 1
@@ -46,8 +46,9 @@ contains
     call command%text(2, name, log, 'name of the patch')
     call element_options(command, material, body, log)
     old = find_set(model, name)
-    if (old > 0) call command%add_error(log, 'the name ' // quoted(name) // ' is taken', &
-      'See ' // model%sets(old)%place)
+    if (old > 0) taken_at = model%sets(old)%place
+    if (draft%find_part(name) > 0) taken_at = in_place(draft%parts(draft%find_part(name))%at)
+    if (allocated(taken_at)) call command%add_error(log, 'the name ' // quoted(name) // ' is taken', 'See ' // taken_at)
     do
       call next_line(deck, rec, log, more)
       if (.not. more) exit
@@ -63,8 +64,12 @@ contains
     if (log%error_count() == error_count .and. new%is_t) call report_suitability(command, new%mesh, log)
     if (log%error_count() > error_count) then
       ! its sets are known all the same, so that there is no second message for each use of them
-      if (old == 0) call add_sets(model, name, in_place(command%at), 3, 1, [0, 0, 0])
+      if (.not. allocated(taken_at)) call add_sets(model, name, in_place(command%at), 3, 1, [0, 0, 0])
       draft%has_lost_sets = .true.
+      return
+    end if
+    if (new%is_part) then
+      call draft%add_part(patch_part(at=command%at, name=name, patch=new%patch, material=material, body=body))
       return
     end if
     call begin_origin(draft, command, 'PATCh', name)
@@ -116,51 +121,20 @@ contains
     type(draft_type), intent(inout) :: draft
     type(message_log), intent(inout) :: log
     type(t_spline_type) :: spline
-    type(t_elements_type) :: elements
-    type(extraction_set_type), target :: flat
-    real(wp), allocatable :: points(:, :)
-    integer :: a, e, k, first, first_node, layers, side, status
+    type(t_body) :: made
+    integer :: side, status
 
-    first = model%mesh%ne + 1
-    first_node = draft%nn + 1
-    layers = 1
     call create_t_spline(new%mesh, new%patch, spline, status)
-    if (status == ok .and. allocated(new%sweep)) then
-      layers = new%sweep%knots%elements()
-      allocate (points(4, spline%n*new%sweep%knots%functions()))
-      call swept_points(new%sweep, spline%cp, points)
-      call t_spline_extraction(new%mesh, spline, [(a, a=1, spline%n)], flat, elements)
-      call swept_extraction(new%sweep, flat, spline%n, [(a, a=first_node, first_node - 1 + size(points, 2))], &
-        model%mesh, k, status)
-    else if (status == ok) then
-      allocate (points, source=spline%cp)
-      call t_spline_extraction(new%mesh, spline, [(a, a=first_node, first_node - 1 + spline%n)], model%mesh, elements)
-    end if
+    if (status == ok) call add_t_body(new%mesh, spline, new%sweep, model, draft, made, status)
     if (status /= ok) then
       call command%add_error(log, status_text(status), '')
       return
     end if
-    do a = 1, size(points, 2)
-      call draft%set_node(first_node + a - 1, points(1:model%ndm, a), points(4, a))
+    call draft%note_elements(made%first, made%last, material, body, command%at)
+    call add_set(model, name, in_place(command%at), set_elements, made%all_elements(), [integer ::])
+    do side = 1, merge(6, 4, allocated(new%sweep))
+      call made%add_surface(name // '.' // trim(side_names(side)), in_place(command%at), side, made%elements_on(side), model)
     end do
-    call draft%note_elements(first, model%mesh%ne, material, body, command%at)
-    call add_set(model, name, in_place(command%at), set_elements, [(e, e=first, model%mesh%ne)], [integer ::])
-    do side = 1, 4
-      call add_surface(side, [(elements%side(side)%id(1:elements%side(side)%n) - elements%first + first &
-        + elements%ne*(k - 1), k=1, layers)])
-    end do
-    if (.not. allocated(new%sweep)) return
-    call add_surface(5, [(first + e - 1, e=1, elements%ne)])
-    call add_surface(6, [(first + elements%ne*(layers - 1) + e - 1, e=1, elements%ne)])
-
-  contains
-
-    subroutine add_surface(side, items)
-      integer, intent(in) :: side, items(:)
-
-      call add_set(model, name // '.' // trim(side_names(side)), in_place(command%at), set_surface, items, &
-        spread(side, 1, size(items)))
-    end subroutine add_surface
   end subroutine add_t_spline
 
   subroutine add_sets(model, name, place, dp, first, n)

@@ -31,6 +31,7 @@ module patch_lines
     integer :: degree(3) = 0                !! of the Lagrange elements
     integer :: nodes = equispaced
     logical :: is_t = .false.               !! refined locally or swept
+    logical :: is_part = .false.            !! of a T-spline that MERGe makes
     type(t_mesh_type) :: mesh
     type(sweep_type), allocatable :: sweep
   end type patch_draft
@@ -55,7 +56,7 @@ contains
           'The order is DEGRee, KNOTs for each direction, POINts, then refinements')
         return
       end if
-    case ('elev', 'inse', 'subd', 'lagr', 'rota', 'tran', 'scal', 'refi', 'rows', 'spli', 'suit', 'swee')
+    case ('elev', 'inse', 'subd', 'lagr', 'rota', 'tran', 'scal', 'refi', 'rows', 'spli', 'suit', 'swee', 'part')
       if (.not. new%is_built) then
         call rec%add_error(log, rec%word(1) // ' before the control points', &
           'The order is DEGRee, KNOTs for each direction, POINts, then refinements')
@@ -67,6 +68,14 @@ contains
       else if (new%is_t .and. any(word == ['elev', 'inse', 'subd', 'lagr'])) then
         call rec%add_error(log, rec%word(1) // ' after local refinement', &
           'Elevate and subdivide the patch first, then refine it locally')
+        return
+      else if (new%is_part .and. any(word == ['lagr', 'refi', 'rows', 'spli', 'suit', 'swee'])) then
+        call rec%add_error(log, rec%word(1) // ' of a patch that is PARTial', &
+          'Only NURBS patches are merged; SWEEp stands in the data set of MERGe')
+        return
+      else if (word == 'part' .and. (new%is_lagrange .or. new%is_t)) then
+        call rec%add_error(log, 'the patch is no NURBS patch any more', &
+          'MERGe takes patches without LAGRange, local refinement and SWEEp')
         return
       else if (new%is_lagrange .and. any(word == ['refi', 'rows', 'spli', 'suit', 'swee'])) then
         call rec%add_error(log, rec%word(1) // ' of Lagrange elements', &
@@ -88,11 +97,14 @@ contains
       if (.not. new%is_t) call begin_t_mesh(rec, new%patch, new%mesh, log)
       new%is_t = log%error_count() == error_count
       if (new%is_t) call carry_out_t_line(rec, ndm, new%patch, new%mesh, new%sweep, log)
+    case ('part')
+      call rec%check_count(1, 1, log, 'PARTial alone')
+      new%is_part = .true.
     case default
       call rec%add_error(log, 'unknown line ' // quoted(rec%word(1)), &
         known_names([character(9) :: 'DEGRee', &
         'KNOTs', 'POINts', 'ELEVate', 'INSErt', 'SUBDivide', 'LAGRange', 'ROTAte', 'TRANslate', &
-        'SCALe', t_line_words], 'lines'))
+        'SCALe', t_line_words, 'PARTial'], 'lines'))
     end select
   end subroutine carry_out_line
 

@@ -284,6 +284,26 @@ def edges_of(group, fine):
     return np.concatenate([along, across], axis=1).reshape(-1, fine, 3), middle.reshape(-1, 3)
 
 
+def on_another(lines, bodies):
+    """Which edges lie along another one of their body: those at T-junctions, where one element meets two."""
+    if not lines:
+        return np.zeros(0, dtype=bool)
+    lines, bodies = np.array(lines), np.array(bodies)
+    start, along = lines[:, :-1], np.diff(lines, axis=1)
+    length = np.maximum((along**2).sum(-1), 1e-300)
+    inside = np.zeros(len(lines), dtype=bool)
+    for i, line in enumerate(lines):
+        size = np.linalg.norm(np.diff(line, axis=0), axis=1).sum()
+        for part in (0.26, 0.5, 0.74):   # one of them lies on the shorter neighbour, whichever edge is the longer one
+            point = line[int(part * (len(line) - 1))]
+            t = np.clip(((point - start) * along).sum(-1) / length, 0, 1)
+            distance = np.linalg.norm(start + t[..., None] * along - point, axis=-1).min(axis=1)
+            distance[i] = np.inf
+            distance[bodies != bodies[i]] = np.inf
+            inside[i] |= distance.min() < 2e-3 * size
+    return inside
+
+
 def camera(view):
     azimuth, elevation = np.radians(view)
     to_eye = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
@@ -387,8 +407,11 @@ def plot_mesh(results, number, options, title, path):
         ax.add_collection(PolyCollection(shapes, facecolors=faces, edgecolors=rims, linewidths=thick, closed=False,
                                          rasterized=True))
     if flat:
-        single = [line[:, :2] for line, name in zip(curves, names) if count[name] == 1]
+        single = [(line[:, :2], name[0]) for line, name in zip(curves, names) if count[name] == 1]
+        hanging = on_another([line for line, _ in single], [body for _, body in single])
         shared = {name: line[:, :2] for line, name in zip(curves, names) if count[name] > 1}
+        shared.update({('hanging', i): single[i][0] for i in np.flatnonzero(hanging)})
+        single = [line for (line, _), inside in zip(single, hanging) if not inside]
         if options.edges:
             thin = float(np.clip(30 / np.sqrt(total), 0.12, 0.5))
             ax.add_collection(LineCollection(list(shared.values()), colors=[(0, 0, 0, 0.55)], linewidths=thin))
@@ -407,7 +430,7 @@ def plot_mesh(results, number, options, title, path):
     if value_of:
         image = matplotlib.cm.ScalarMappable(norm=norm, cmap=cmap)
         if wide > 2 * tall:
-            bar = figure.colorbar(image, ax=ax, extend=extend, orientation='horizontal', fraction=0.05, pad=0.16,
+            bar = figure.colorbar(image, ax=ax, extend=extend, orientation='horizontal', fraction=0.05, pad=0.24,
                                   aspect=45, shrink=0.7)
         else:
             bar = figure.colorbar(image, ax=ax, extend=extend, fraction=0.035, pad=0.03, aspect=25,

@@ -15,7 +15,7 @@ module t_patch_lines
   !! result is suitable is checked when the data set ends, and a crossing is named.
   use kinds, only: wp
   use status_codes, only: ok, status_text
-  use messages, only: message_log, quoted, known_names
+  use messages, only: message_log, quoted, known_names, lower_case
   use number_text, only: write_number
   use deck_record, only: record
   use nurbs_patch, only: nurbs_patch_type
@@ -27,7 +27,7 @@ module t_patch_lines
   use t_sweep, only: sweep_type, straight_sweep, elevate_sweep, refine_sweep
   implicit none (type, external)
   private
-  public :: begin_t_mesh, carry_out_t_line, report_suitability, t_line_words, surface_sides
+  public :: begin_t_mesh, carry_out_t_line, read_sweep, report_suitability, t_line_words, surface_sides
 
   character(9), parameter :: t_line_words(5) = [character(9) :: 'REFIne', 'ROWS', 'SPLIt', 'SUITable', 'SWEEp']
   character(6), parameter :: surface_sides(4) = [character(6) :: 'left', 'right', 'bottom', 'top']
@@ -83,10 +83,11 @@ contains
     type(nurbs_patch_type), intent(in) :: patch
     type(t_mesh_type), intent(inout) :: mesh
     type(message_log), intent(inout) :: log
-    integer :: levels, status, side, last, step, e
+    integer :: levels, status, side, last, step, e, error_count
     integer, allocatable :: ids(:), marked(:)
     real(wp) :: box(6), distance
     character(4) :: where_
+    logical :: found
 
     if (.not. mesh%regular) then
       call rec%add_error(log, 'REFIne after ROWS or SPLIt, or on repeated knots, cannot keep the mesh suitable', &
@@ -94,7 +95,10 @@ contains
       return
     end if
     levels = 1
+    error_count = log%error_count()
+    call rec%check_options([character(8) :: 'side', 'distance', 'levels'], log)
     call rec%integer_option('levels', levels, log)
+    if (log%error_count() > error_count) return
     if (levels < 0 .or. levels > 20) then
       call rec%add_error(log, 'LEVEls are 0 to 20', '')
       return
@@ -103,6 +107,7 @@ contains
     if (rec%has('levels')) last = rec%find('levels') - 2
     where_ = rec%key(2)
     status = ok
+    found = .true.
     select case (where_)
     case ('box')
       box = [-1, 1, -1, 1, -1, 1]*huge(1.0_wp)
@@ -112,7 +117,9 @@ contains
       end if
       call rec%numbers(3, box(1:2*ndm), log, 'bounds')
       do step = 1, 2*levels
-        marked = cells_below_level(mesh, cells_in_place(mesh, patch, box(1::2), box(2::2)), 2*levels)
+        marked = cells_in_place(mesh, patch, box(1::2), box(2::2))
+        found = size(marked) > 0
+        marked = cells_below_level(mesh, marked, 2*levels)
         if (size(marked) == 0) exit
         call refine_cells(mesh, marked, status)
         if (status /= ok) exit
@@ -123,6 +130,7 @@ contains
         return
       end if
       call rec%numbers(3, box(1:4), log, 'bounds')
+      found = overlaps(mesh, box([1, 3]), box([2, 4]))
       call refine_box(mesh, box([1, 3]), box([2, 4]), levels, status)
     case ('side')
       call read_side(rec, side, log)
@@ -142,6 +150,7 @@ contains
     case ('elem')
       allocate (ids(max(0, last - 2)))
       call rec%integers(3, ids, log, 'elements')
+      found = size(ids) > 0
       associate (n => patch%elements())
         do e = 1, size(ids)
           if (ids(e) >= 1 .and. ids(e) <= product(n(1:2))) cycle
@@ -155,8 +164,24 @@ contains
       call rec%add_error(log, 'where to refine is missing', 'Write REFIne BOX, PARAmeter, SIDE= or ELEMents')
       return
     end select
+    if (.not. found) call rec%add_error(log, 'there is nothing to refine there', &
+      'No element reaches into the box; bounds come in pairs, the smaller one first')
     if (status /= ok) call rec%add_error(log, status_text(status), 'Refine less')
   end subroutine read_refinement
+
+  pure logical function overlaps(mesh, lo, hi)
+    !! Is there anything in a box of parameters?
+    type(t_mesh_type), intent(in) :: mesh
+    real(wp), intent(in) :: lo(2), hi(2)
+    integer :: d
+
+    overlaps = .true.
+    do d = 1, 2
+      associate (x => mesh%lines(d)%x)
+        overlaps = overlaps .and. lo(d) < hi(d) .and. lo(d) < x(ubound(x, 1)) .and. hi(d) > x(lbound(x, 1))
+      end associate
+    end do
+  end function overlaps
 
   subroutine refine_elements(mesh, patch, ids, levels, status)
     !! Refine the boxes of elements of the patch.
@@ -185,10 +210,15 @@ contains
     type(message_log), intent(inout) :: log
     character(:), allocatable :: name
 
+    side = 0
+    if (.not. rec%has('side')) then
+      call rec%add_error(log, 'the side is missing', 'Write SIDE=left, right, bottom or top')
+      return
+    end if
     name = ''
     call rec%text_option('side', name, log)
     do side = 1, 4
-      if (name == trim(surface_sides(side))) return
+      if (lower_case(name) == trim(surface_sides(side))) return
     end do
     call rec%add_error(log, 'there is no side '//quoted(name), known_names(surface_sides, 'sides'))
     side = 0
@@ -209,8 +239,8 @@ contains
     call rec%check_options([character(5) :: 'side', 'rows', 'times', 'from', 'to'], log)
     call read_row_count(rec, rows, log)
     call rec%integer_option('times', times, log)
-    if (rows < 1 .or. times < 0) then
-      call rec%add_error(log, 'ROWS and TIMEs are positive', 'Write ROWS SIDE=top ROWS=2 TIMEs=1')
+    if (rows < 1 .or. times < 0 .or. times > 20) then
+      call rec%add_error(log, 'ROWS is positive, TIMEs is 0 to 20', 'Write ROWS SIDE=top ROWS=2 TIMEs=1')
       return
     end if
     call rows_at_side(mesh, side, rows, lo, hi)
@@ -218,6 +248,7 @@ contains
     call rec%number_option('from', lo(along), log)
     call rec%number_option('to', hi(along), log)
     call split_box(mesh, lo, hi, along, times, halved)
+    if (times > 0 .and. halved == 0) call nothing_to_split(rec, log)
   end subroutine read_rows
 
   subroutine read_row_count(rec, rows, log)
@@ -242,17 +273,27 @@ contains
       call rec%add_error(log, 'where to split is missing', 'Write SPLIt PARAmeter s1 s2 t1 t2 DIRection=d')
       return
     end if
+    call rec%check_options([character(9) :: 'direction', 'times'], log)
     call rec%numbers(3, box, log, 'bounds')
     d = 0
     times = 1
     call rec%integer_option('direction', d, log)
     call rec%integer_option('times', times, log)
-    if (d < 1 .or. d > 2 .or. times < 0) then
-      call rec%add_error(log, 'DIRection is 1 or 2, TIMEs is not negative', 'Write DIRection=1: lines across direction 1')
+    if (d < 1 .or. d > 2 .or. times < 0 .or. times > 20) then
+      call rec%add_error(log, 'DIRection is 1 or 2, TIMEs is 0 to 20', 'Write DIRection=1: lines across direction 1')
       return
     end if
     call split_box(mesh, box([1, 3]), box([2, 4]), d, times, halved)
+    if (times > 0 .and. halved == 0) call nothing_to_split(rec, log)
   end subroutine read_split
+
+  subroutine nothing_to_split(rec, log)
+    type(record), intent(in) :: rec
+    type(message_log), intent(inout) :: log
+
+    call rec%add_error(log, 'there is nothing to split there', &
+      'No element overlaps the bounds; they come in pairs, the smaller one first')
+  end subroutine nothing_to_split
 
   subroutine read_sweep(rec, ndm, sweep, log)
     type(record), intent(inout) :: rec
@@ -267,6 +308,11 @@ contains
       call rec%add_error(log, 'SWEEp makes a solid: the model has two dimensions', 'Remove it, or set ndm to 3')
       return
     end if
+    if (allocated(sweep)) then
+      call rec%add_error(log, 'the surface is swept already', 'One SWEEp makes a solid')
+      return
+    end if
+    call rec%check_options([character(8) :: 'degree', 'elements', 'ratio'], log)
     call rec%numbers(2, vector, log, 'components of the vector')
     degree = 1
     n = 1

@@ -21,10 +21,12 @@ module t_merge
   use t_spline, only: t_spline_type, create_t_functions, homogeneous_polar_point
   implicit none (type, external)
   private
-  public :: merge_patches, turned_patch
+  public :: merge_patches, turned_patch, side_before
 
   !> knots of both patches closer than this part of the edge's interval are one
   real(wp), parameter :: same_knot = 1.0e-10_wp
+  !> quarters of a turn that bring a side to s = 1
+  integer, parameter :: turns(4) = [2, 0, 1, 3]
 
 contains
 
@@ -93,13 +95,26 @@ contains
     opposite = side - 1 + 2 * mod(side, 2)
   end function opposite
 
+  pure integer function side_before(side, turned_side)
+    !! Which side of a patch is a side of the patch turned so that turned_side becomes s = 1.
+    integer, intent(in) :: side            !! 1..4 of the turned patch
+    integer, intent(in) :: turned_side     !! 1..4 of the patch
+
+    integer, parameter :: quarter(4) = [4, 3, 1, 2]
+    integer :: k
+
+    side_before = side
+    do k = 1, turns(turned_side)
+      side_before = quarter(side_before)
+    end do
+  end function side_before
+
   pure function turned_patch(patch, side) result(turned)
     !! The same surface with parameters turned by quarters, so that a side becomes s = 1.
     type(nurbs_patch_type), intent(in) :: patch     !! surface
     integer, intent(in) :: side                     !! 1..4
     type(nurbs_patch_type) :: turned
 
-    integer, parameter :: turns(4) = [2, 0, 1, 3]
     type(nurbs_patch_type) :: before
     integer :: i, j, k, n(3)
 

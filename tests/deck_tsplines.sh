@@ -49,5 +49,30 @@ for refine in CELLs ROWS NONE; do
   expect "space_$refine" elastic 0.08105769230769231 1e-12
 done
 
+# Merged patches: one body without gap (its area is that of the outline), one field.
+for smooth in C0 C1 C2; do
+  solve "merge_$smooth" verify/merge_t smooth=$smooth
+  expect "merge_$smooth" corner_ux 0.029 1e-13
+  expect "merge_$smooth" corner_uy 0.003 1e-13
+  expect "merge_$smooth" supports_rx 0 1e-11
+  expect "merge_$smooth" supports_ry 0 1e-11
+  expect "merge_$smooth" elastic 0.234375 1e-12
+  "$BEZEL" "$BEZEL_SOURCE/inputs/verify/merge_t.inp" smooth=$smooth --check </dev/null | awk -v label="merge_$smooth" '
+    $1 == "body" { bodies++; area = $NF }
+    END {
+      if (bodies == 1 && (area - 2.5)^2 < 1e-24) exit
+      print label ": " bodies " bodies, area " area ", expected one of 2.5"
+      exit 1
+    }' || failures=$((failures + 1))
+done
+output=$("$BEZEL" "$BEZEL_SOURCE/inputs/verify/merge_t.inp" shift=0.1 --check 2>&1 </dev/null)
+status=$?
+if [ $status -ne 2 ] || [ "$(grep -c 'inp:[0-9]*: ' <<<"$output")" -ne 1 ] \
+  || ! grep -q 'merge_t.inp:[0-9]*: MERGe: the edges are not the same curve: .* are 0.1[0-9]* apart' <<<"$output"; then
+  echo "edges 0.1 apart: exit status $status"
+  echo "$output"
+  failures=$((failures + 1))
+fi
+
 echo "$failures failures"
 [ $failures -eq 0 ]

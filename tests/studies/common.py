@@ -90,3 +90,15 @@ def figure(plot, name):
     pictures.mkdir(exist_ok=True)
     plot.savefig(pictures / f"{name}.png", dpi=110)
     print(f"figure {pictures / name}.png", flush=True)
+
+
+def mesh_picture(label, name, field, step):
+    """The deformed mesh of a run at a step, drawn by driver/plot, beside the decks."""
+    folder = work / label
+    before = set(folder.glob("*.png"))
+    subprocess.run([root / "driver" / "plot", folder, "--no-history", "--field", field, "--step", str(step), "--dpi", "110"],
+                   check=True, capture_output=True)
+    made = sorted(set(folder.glob("*.png")) - before)
+    pictures.mkdir(exist_ok=True)
+    made[0].rename(pictures / f"{name}.png")
+    print(f"figure {pictures / name}.png", flush=True)

@@ -13,7 +13,7 @@ reference = common.Run("inputs/ironing.inp", "trade_reference", basis="N", p=3, 
 press_reference = reference.history["top_ry"][19]
 
 cases = [dict(basis=b[0], p=int(b[1]), mesh=m, gp=2, penalty=1e3)
-         for b in ("L1", "L2", "N2", "N3", "N4") for m in (1, 2)]
+         for b in ("L1", "L2", "N2", "N3", "N4", "T3") for m in (1, 2)]
 cases += [dict(basis="N", p=3, mesh=1, gp=gp, penalty=1e3) for gp in (1, 3, 4, 6, 8)]
 cases += [dict(basis="N", p=3, mesh=1, gp=4, penalty=penalty) for penalty in (1e1, 1e2, 1e4, 1e5, 1e6)]
 
@@ -38,7 +38,8 @@ common.table("trade", ["basis", "dofs", "Gauss points", "penalty", "press-in for
                        "oscillation Px", "penetration", "iterations", "time [s]"], rows)
 
 figure, axes = plt.subplots(figsize=(6.5, 4.5))
-for name, colour in zip(("L1", "L2", "N2", "N3", "N4"), ("#bbbbbb", "#e0a030", "#80b0e0", "#3070c0", "#103080")):
+for name, colour in zip(("L1", "L2", "N2", "N3", "N4", "T3"),
+                        ("#bbbbbb", "#e0a030", "#80b0e0", "#3070c0", "#103080", "#10a040")):
     mine = [p for p in points if p[0] == name and p[1]["gp"] == 2 and p[1]["penalty"] == 1e3]
     axes.loglog([p[2] for p in mine], [p[3] for p in mine], "o-", color=colour, label=name)
 others = [p for p in points if p[1]["gp"] != 2 or p[1]["penalty"] != 1e3]
