@@ -224,6 +224,8 @@ contains
     if (status /= ok) then
       call log%put('step '//text(run%step)//' failed after '//text(report%cutbacks)//' cut-backs at time ' &
         //number(run%eq%time_n)//': '//report%last%fault)
+      if (size(model%props) == 0) call log%put('without PROPortional everything acts at once, and halving a step does '// &
+        'not help: add PROPortional 1, then lines of time and value')
       call restore_last_state(model, run, clock)
       call log%put('the last converged state (time '//number(run%eq%time_n)//') is on disk')
       code = exit_failed

@@ -129,7 +129,9 @@ contains
         do a = 1, size(ix)
           sum3 = sum3 + ce(a, b)*wf(:, ix(a))
         end do
-        values(:, k) = sum3/self%weights(k)
+        ! an operator with an empty column has no control value there
+        values(:, k) = 0
+        if (abs(self%weights(k)) > 0) values(:, k) = sum3/self%weights(k)
       end do
     end do
   end subroutine interpolate

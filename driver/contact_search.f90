@@ -29,6 +29,7 @@ module contact_search
     !! The master surface in its current position.
     integer :: ndm = 0, dp = 0
     real(wp) :: reach = 0                       !! points farther away stay unpaired [length]
+    real(wp) :: side = 1                        !! +1 or -1: the outward normal is side*n
     integer :: moved = 0                        !! counts the positions of the master
     integer :: searches = 0                     !! global searches since the start
     real(wp), allocatable :: x(:, :)            !! current position of every node (ndm,nn) [length]
@@ -198,7 +199,7 @@ contains
 
     crosses = .false.
     call normal_at(from, xi_from, x, nrm)
-    if (dot_product(xs - x, nrm) >= 0) return
+    if (search%side*dot_product(xs - x, nrm) >= 0) return
     at = xi_to
     do s = 1, size(surface%neighbour, 1)
       if (surface%neighbour(s, to) == from) at((s + 1)/2) = merge(0.0_wp, 1.0_wp, mod(s, 2) == 1)
@@ -281,7 +282,7 @@ contains
         edge_sides = report%sides(1:search%dp)
       end if
     end do
-    if (facet > 0 .or. edge == 0) return
+    if (edge == 0 .or. (facet > 0 .and. best <= edge_best)) return
     do c = 1, search%dp  ! on the master's own edge the point is unpaired, on a kink it is paired with it
       if (edge_sides(c) == 0) cycle
       if (surface%neighbour(edge_sides(c), edge) == 0) return

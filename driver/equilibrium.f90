@@ -175,6 +175,7 @@ contains
         call assemble_interface(model, i, eq%interfaces(i), task, eq%u, eq%un, du, moves, eq%time, dt, eq%system, eq%f, &
                                 sums, status, place)
         if (status /= ok) then
+          call clock%stop(phase_contact)
           eq%fault = 'an interface point of '//model%interfaces(i)%name//': '//status_text(status)
           return
         end if

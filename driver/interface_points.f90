@@ -118,6 +118,7 @@ contains
       if (.not. reach > 0) reach = 2*max(largest_facet(model, points%slave), largest_facet(model, points%master))
     end associate
     call start_search(points%search, model%ndm, points%master, reach)
+    points%search%side = real(model%interfaces(number)%side, wp)
   end subroutine prepare_interface
 
   function largest_facet(model, surface) result(size_)
@@ -248,11 +249,11 @@ contains
           return
         end if
         points%gap(i) = energy%gap
+        energies%stored = energies%stored + energy%stored
+        energies%dissipated = energies%dissipated + energy%dissipated
         if (.not. energy%active) cycle
         points%traction(i) = energy%traction
         points%active(i) = .true.
-        energies%stored = energies%stored + energy%stored
-        energies%dissipated = energies%dissipated + energy%dissipated
         energies%penalty = energies%penalty + energy%penalty
         energies%gap = min(energies%gap, energy%gap)
         if (task == task_tangent) then
@@ -282,6 +283,8 @@ contains
     points%xi = points%xi_n
     points%held = points%held_n
     points%hist = points%hist_n
+    ! the pairs are no longer those of the position searched last, even if the next attempt begins there
+    if (allocated(points%search%x)) deallocate (points%search%x)
   end subroutine roll_back_interface
 
   subroutine forget_search(points)

@@ -50,6 +50,7 @@ contains
     else
       keyword = rec%key(1)
       call new_element(keyword, element, known)
+      if (keyword == 'gpts' .and. allocated(element)) deallocate (element)  ! CONTact makes it, no element of a mesh is one
       if (.not. allocated(element)) call rec%add_error(log, 'unknown element type ' // &
         quoted(rec%word(1)), &
         'Known element types: ' // known, 1)

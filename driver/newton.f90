@@ -8,7 +8,7 @@ module newton
   !! where stresses are small differences (nearly incompressible, high degree) the residual stays above any tolerance.
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use kinds, only: wp
-  use status_codes, only: ok, no_convergence, status_text
+  use status_codes, only: ok, no_convergence, singular_matrix, status_text
   use model_data, only: model_type
   use dof_map, only: is_prescribed
   use equilibrium, only: equilibrium_type, form_equilibrium
@@ -122,6 +122,8 @@ contains
       call clock%stop(phase_factorise)
       if (status /= ok) then
         report%fault = 'the tangent: '//status_text(status)
+        if (status == singular_matrix) report%fault = report%fault// &
+          '. Is a body free to move? Hold it by BOUNdary, or let it touch from the start'
         exit
       end if
       call clock%start(phase_solve)

@@ -14,6 +14,8 @@ module node_commands
   private
   public :: read_header, read_coordinates
 
+  integer, parameter :: largest_node = 20000000   !! a greater number is a slip, and no memory holds it
+
 contains
 
   subroutine read_header(deck, model, draft, log, good)
@@ -91,6 +93,12 @@ contains
       if (n < 1) then
         if (n < 0 .or. rec%word(1) == '0') &
           call rec%add_error(log, 'node numbers begin with 1', '', 1)
+        n_old = 0
+        cycle
+      end if
+      if (n > largest_node) then
+        call rec%add_error(log, 'the node number ' // whole_text(n) // ' is too large', 'Numbers go up to ' // &
+          whole_text(largest_node) // ' and have no gaps', 1)
         n_old = 0
         cycle
       end if

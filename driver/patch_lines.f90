@@ -20,6 +20,7 @@ module patch_lines
   public :: patch_draft, carry_out_line
 
   integer, parameter :: largest_degree = 20
+  integer, parameter :: most_elements = 10000000   !! of a patch: more is a slip, and no memory holds it
 
   type :: patch_draft
     integer :: dp = 0                       !! directions, 0: DEGRee is missing
@@ -279,7 +280,7 @@ contains
     type(patch_draft), intent(inout) :: new
     type(message_log), intent(inout) :: log
     real(wp), allocatable :: old(:), ideal(:)
-    real(wp) :: ratio, both
+    real(wp) :: ratio, both, others(3)       ! elements in the other directions
     integer :: d, m, n, status
     logical :: to_one_end, to_both_ends
 
@@ -295,9 +296,15 @@ contains
     call rec%check_options([character(5) :: 'ratio', 'both'], log)
     allocate (old, source=new%patch%knots(d)%breaks())
     m = size(old)
+    others = new%patch%elements()
+    others(d) = 1
     if (n < m - 1 .or. n < 1) then
       call rec%add_error(log, 'direction ' // whole_text(d) // ' has ' // whole_text(m - 1) // &
         ' elements already', 'The number is that of all elements in this direction', 3)
+      return
+    else if (real(n, wp)*product(others(:new%dp)) > most_elements) then
+      call rec%add_error(log, 'the patch would have more than ' // whole_text(most_elements) // ' elements', &
+        'The number is that of all elements in this direction', 3)
       return
     else if (.not. (ratio > 0 .and. both > 0)) then
       call rec%add_error(log, 'a ratio of element lengths must be positive', '')

@@ -118,6 +118,7 @@ contains
           call rec%add_error(log, 'unknown predictor "'//rec%word(2)//'"', 'Known predictors: TANGent, CONTinue', 2)
         end select
       case default
+        rec%ends_set = .true.  ! a solution command is one line: nothing is skipped
         call input%refuse_command(rec, known, log)
         cycle
       end select
@@ -127,6 +128,8 @@ contains
       call log%add_error(program%commands(open_loops(n))%at, 'LOOP', 'this loop is not closed', &
         'Add NEXT before END')
     end do
+    if (begun .and. log%error_count() == 0 .and. .not. any(program%commands%what == do_solve)) &
+      call rec%add_warning(log, 'nothing is solved', 'Add TANG,,1 behind TIME')
     if (.not. begun .and. log%error_count() == 0) call rec%add_error(log, 'the deck has no solution commands', &
       'Add BATCh, DT,,1, TIME, TANG,,1, END after the mesh')
   end subroutine read_solution

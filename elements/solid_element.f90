@@ -62,6 +62,7 @@ contains
         case ('elas')
           if (size(words) /= 2 .or. size(values) /= 2) then
             fault = 'write ELAStic, one law (NEOHook, STVK, ISOTropic), then E and nu'
+            if (size(words) > 2) fault = fault//'; "'//trim(words(3))//'" is neither a number nor a parameter'
             return
           end if
           elastic = i

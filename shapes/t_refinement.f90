@@ -25,6 +25,8 @@ module t_refinement
 
   !> samples of a cell in each direction that stand for its place in space
   integer, parameter :: samples = 5
+  !> relative; whether a cell lies on a bound must not hang on the rounding of its corners
+  real(wp), parameter :: touching = 1.0e-9_wp
 
 contains
 
@@ -222,13 +224,14 @@ contains
   end function cells_below_level
 
   pure function cells_in_place(mesh, patch, lo, hi) result(cells)
-    !! Leaves that reach into a box in space: the bounds of 5 x 5 points of the cell meet it.
+    !! Leaves that reach into a box in space or touch it: the bounds of 5 x 5 points of the cell
+    !! meet it.
     type(t_mesh_type), intent(in) :: mesh
     type(nurbs_patch_type), intent(in) :: patch     !! the surface that the mesh belongs to
     real(wp), intent(in) :: lo(3), hi(3)            !! corners of the box [length]
     integer, allocatable :: cells(:)
 
-    real(wp) :: x(3,samples**2)
+    real(wp) :: x(3,samples**2), slack
     integer, allocatable :: all_cells(:)
     integer :: i, n
 
@@ -237,7 +240,8 @@ contains
     do i = 1, size(all_cells)
       if (mesh%is_empty(all_cells(i))) cycle
       call cell_samples(mesh, patch, all_cells(i), x)
-      if (any(minval(x, 2) > hi .or. maxval(x, 2) < lo)) cycle
+      slack = touching * maxval(maxval(x, 2) - minval(x, 2))
+      if (any(minval(x, 2) - slack > hi .or. maxval(x, 2) + slack < lo)) cycle
       n = n + 1
       all_cells(n) = all_cells(i)
     end do
@@ -274,7 +278,7 @@ contains
       do k = 1, samples**2
         j = 1 + mod(k - 1, samples)
         if (across == 1) j = 1 + (k - 1) / samples
-        if (norm2(x(:,k) - foot(:,j)) >= distance) cycle
+        if (norm2(x(:,k) - foot(:,j)) >= (1 - touching) * distance) cycle
         n = n + 1
         all_cells(n) = all_cells(i)
         exit
