@@ -50,29 +50,16 @@ module deck_reader
     quoted, in_place, edit_distance
   use number_text, only: equal
   use expressions, only: symbol_source, value, expression_problem, evaluate, value_text, &
-    unknown_value, number_value, word_value
-  use deck_record, only: record, logical_line, blank_line, append_text, command_form
-  use deck_source, only: source, source_mark, line_read, deck_ended
+    number_value, word_value
+  use control_words, only: control_word
+  use deck_record, only: record, logical_line, blank_line, command_form
+  use deck_source, only: source, line_read, deck_ended
+  use deck_substitution, only: substitute
+  use deck_blocks, only: control_block, block_stack, if_block, loop_block
   use parameters, only: deck_parameters, setting, command_line_place
   implicit none (type, external)
   private
   public :: deck, record, setting
-
-  integer, parameter :: if_block = 1
-  integer, parameter :: loop_block = 2
-
-  type :: control_block
-    integer :: kind = if_block
-    type(deck_place) :: at                       ! the line that opens it
-    integer :: nesting = 0                       ! files open there
-    logical :: outer_active = .true.             ! is the block itself read?
-    logical :: active = .true.                   ! are its lines read?
-    logical :: taken = .false.                   ! IF: a branch was read
-    logical :: has_else = .false.
-    integer :: pass = 1, passes = 1              ! LOOP
-    character(:), allocatable :: counter
-    type(source_mark) :: begin
-  end type control_block
 
   type :: deck
     character(:), allocatable :: title
@@ -80,9 +67,7 @@ module deck_reader
     type(deck_parameters), pointer :: parameters => null()
     class(symbol_source), pointer, private :: symbols => null()   ! the same
     type(source), private :: text
-    type(control_block), allocatable, private :: blocks(:)
-    integer, private :: open_blocks = 0
-    logical, private :: active = .true.
+    type(block_stack), private :: blocks
     logical, private :: in_solution = .false.
     logical, private :: at_end = .false.
     logical, private :: line_damaged = .false.
@@ -103,7 +88,6 @@ module deck_reader
     procedure :: place
     procedure :: full_text
     procedure, private :: next_text
-    procedure, private :: substitute
     procedure, private :: read_parameters
     procedure, private :: read_table
     procedure, private :: begin_if
@@ -112,11 +96,6 @@ module deck_reader
     procedure, private :: next_pass
     procedure, private :: include
     procedure, private :: condition
-    procedure, private :: push_block
-    procedure, private :: pop_block
-    procedure, private :: find_block
-    procedure, private :: loop_is_skipped
-    procedure, private :: close_blocks
   end type deck
 
 contains
@@ -134,7 +113,6 @@ contains
     allocate (self%parameters)
     self%symbols => self%parameters
     call self%parameters%start(settings)
-    allocate (self%blocks(4))
     self%path = path
     self%title = ''
     self%command = ''
@@ -269,7 +247,7 @@ contains
     type(logical_line) :: line
     character(4) :: word
 
-    do while (self%open_blocks > 0 .and. .not. self%at_end)
+    do while (self%blocks%count > 0 .and. .not. self%at_end)
       call self%next_text(line, word, log)
     end do
     call self%parameters%check_settings(log)
@@ -317,7 +295,7 @@ contains
     do while (.not. self%at_end)
       call self%text%next_line(line, outcome, log)
       if (outcome /= line_read) then
-        call self%close_blocks(log)
+        call self%blocks%close(self%text%nesting(), log)
         self%at_end = outcome == deck_ended
         cycle
       end if
@@ -336,8 +314,8 @@ contains
           cycle
         end if
       end select
-      if (.not. self%active) cycle
-      call self%substitute(line, log)
+      if (.not. self%blocks%active) cycle
+      call substitute(line, self%symbols, self%scratch, self%line_damaged, log)
       word = control_word(line%text(1:line%n))
       select case (word)
       case ('incl')
@@ -355,94 +333,6 @@ contains
       return
     end do
   end subroutine next_text
-
-  pure function control_word(text) result(word)
-    !! if, elif, else, endi, loop, next, incl, para, tabl, inte, batc, end; '' for anything else.
-    character(*), intent(in) :: text
-    character(4) :: word
-    character(:), allocatable :: first
-    integer :: n, k
-
-    word = ''
-    if (len(text) < 2) return
-    if (scan(text(1:1), 'ieElLnNpPtTbBI') == 0) return
-    n = scan(text, ' ,=(') - 1
-    if (n < 0) n = len(text)
-    first = lower_case(text(1:n))
-    k = verify(text(n+1:), ' ')
-    if (k > 0) then
-      k = k + n
-      if (text(k:k) == '=' .and. text(k:min(k+1, len(text))) /= '==') return
-    end if
-    select case (first)
-    case ('if', 'end')
-      word = first
-      return
-    case ('else')
-      word = 'else'
-      if (k > 0) then
-        if (lower_case(text(k:min(k+1, len(text)))) == 'if' .and. verify(text(k+2:min(k+2, &
-          len(text))), ' (') == 0) &
-          word = 'elif'
-      end if
-      return
-    end select
-    if (n < 4) return
-    select case (first(1:4))
-    case ('loop', 'next', 'incl', 'para', 'tabl', 'batc', 'endi')
-      word = first(1:4)
-    case ('else')
-      word = 'else'
-      if (first(5:) == 'if') word = 'elif'
-    case ('inte')
-      if (n == 4 .or. first(5:min(6, n)) == 'ra') word = 'inte'
-    end select
-  end function control_word
-
-  subroutine substitute(self, line, log)
-    !! Replaces {expr} by its value, inner braces first.
-    class(deck), intent(inout) :: self
-    type(logical_line), intent(inout) :: line
-    type(message_log), intent(inout) :: log
-    integer, parameter :: deepest = 20
-    type(expression_problem) :: problem
-    type(value) :: v
-    integer :: opening(deepest), depth, i, k
-
-    if (index(line%text(1:line%n), '{') == 0) return
-    call blank_line(self%scratch)
-    depth = 0
-    k = 1
-    do i = 1, line%n
-      if (k <= line%joins) then
-        if (line%join_column(k) == i) then
-          line%join_column(k) = self%scratch%n + 1   ! continuations move with the text
-          k = k + 1
-        end if
-      end if
-      if (line%text(i:i) == '{' .and. depth < deepest) then
-        depth = depth + 1
-        opening(depth) = self%scratch%n + 1
-        call append_text(self%scratch, '{')
-      else if (line%text(i:i) == '}' .and. depth > 0) then
-        call evaluate(self%scratch%text(opening(depth)+1:self%scratch%n), self%symbols, v, problem)
-        if (problem%found) call log%add_error(line%at, '', problem%fact, problem%remedy)
-        if (v%kind == unknown_value) self%line_damaged = .true.
-        self%scratch%n = opening(depth) - 1
-        call append_text(self%scratch, value_text(v))
-        depth = depth - 1
-      else
-        call append_text(self%scratch, line%text(i:i))
-      end if
-    end do
-    if (depth > 0) then
-      call log%add_error(line%at, '', '"}" is missing behind ' // &
-        quoted(self%scratch%text(opening(depth):self%scratch%n)), '')
-      self%line_damaged = .true.
-    end if
-    line%n = 0
-    call append_text(line, self%scratch%text(1:self%scratch%n))
-  end subroutine substitute
 
   subroutine read_parameters(self, rec, word, in_hand, log)
     class(deck), intent(inout) :: self
@@ -514,11 +404,11 @@ contains
     type(control_block) :: block
 
     block%kind = if_block
-    block%outer_active = self%active
-    block%active = self%active
-    if (self%active) block%active = self%condition(line, 'IF', log)
+    block%outer_active = self%blocks%active
+    block%active = self%blocks%active
+    if (self%blocks%active) block%active = self%condition(line, 'IF', log)
     block%taken = block%active
-    call self%push_block(block, line%at)
+    call self%blocks%push(block, self%text%nesting(), line%at)
   end subroutine begin_if
 
   subroutine next_branch(self, line, word, log)
@@ -533,13 +423,13 @@ contains
     command = 'ENDIf'
     if (word == 'else') command = 'ELSE'
     if (word == 'elif') command = 'ELSEif'
-    if (.not. self%find_block(if_block, command, line%at, log)) return
+    if (.not. self%blocks%find(if_block, self%text%nesting(), command, line%at, log)) return
     if (word == 'endi') then
-      call self%pop_block()
+      call self%blocks%pop()
       return
     end if
     holds = .true.
-    associate (block => self%blocks(self%open_blocks))
+    associate (block => self%blocks%list(self%blocks%count))
       if (block%has_else) call log%add_error(line%at, command, &
         'the IF at ' // in_place(block%at) // ' has its ELSE already', '')
       if (word == 'else' .and. line%n > len('ELSE')) call log%add_error(line%at, command, &
@@ -551,7 +441,7 @@ contains
         holds = self%condition(line, command, log)
       block%active = holds .and. block%outer_active
       block%taken = block%taken .or. holds
-      self%active = block%active
+      self%blocks%active = block%active
     end associate
   end subroutine next_branch
 
@@ -566,7 +456,7 @@ contains
 
     condition = .false.
     self%line_damaged = .false.
-    call self%substitute(line, log)
+    call substitute(line, self%symbols, self%scratch, self%line_damaged, log)
     if (self%line_damaged) return
     first = len('IF') + 1
     if (command == 'ELSEif') first = index(lower_case(line%text(1:line%n)), 'if') + len('IF')
@@ -592,15 +482,15 @@ contains
     type(value) :: v
 
     block%kind = loop_block
-    block%outer_active = self%active
-    block%active = self%active
+    block%outer_active = self%blocks%active
+    block%active = self%blocks%active
     block%counter = ''
-    if (.not. self%active) then
-      if (self%loop_is_skipped()) call self%push_block(block, line%at)
+    if (.not. self%blocks%active) then
+      if (self%blocks%loop_is_skipped()) call self%blocks%push(block, self%text%nesting(), line%at)
       return
     end if
     self%line_damaged = .false.
-    call self%substitute(line, log)
+    call substitute(line, self%symbols, self%scratch, self%line_damaged, log)
     self%control%line = line
     self%control%command = 'LOOP'
     self%control%is_damaged = self%line_damaged
@@ -623,7 +513,7 @@ contains
     if (len(block%counter) > 0 .and. block%active) &
       call self%parameters%set_counter(block%counter, 1, line%at, log)
     block%begin = self%text%mark()
-    call self%push_block(block, line%at)
+    call self%blocks%push(block, self%text%nesting(), line%at)
   end subroutine begin_loop
 
   subroutine next_pass(self, line, log)
@@ -631,11 +521,11 @@ contains
     type(logical_line), intent(in) :: line
     type(message_log), intent(inout) :: log
 
-    if (.not. self%active) then
-      if (.not. self%loop_is_skipped()) return
+    if (.not. self%blocks%active) then
+      if (.not. self%blocks%loop_is_skipped()) return
     end if
-    if (.not. self%find_block(loop_block, 'NEXT', line%at, log)) return
-    associate (block => self%blocks(self%open_blocks))
+    if (.not. self%blocks%find(loop_block, self%text%nesting(), 'NEXT', line%at, log)) return
+    associate (block => self%blocks%list(self%blocks%count))
       if (block%active .and. block%pass < block%passes) then
         block%pass = block%pass + 1
         if (len(block%counter) > 0) &
@@ -644,99 +534,6 @@ contains
         return
       end if
     end associate
-    call self%pop_block()
+    call self%blocks%pop()
   end subroutine next_pass
-
-  logical function loop_is_skipped(self)
-    !! Are lines left out because of a LOOP without passes? (Where an IF leaves them out, its
-    !! solution part may hold LOOP and NEXT of another kind.)
-    class(deck), intent(in) :: self
-    integer :: i
-
-    loop_is_skipped = .false.
-    do i = 1, self%open_blocks
-      if (self%blocks(i)%active) cycle
-      loop_is_skipped = self%blocks(i)%kind == loop_block
-      return
-    end do
-  end function loop_is_skipped
-
-  subroutine push_block(self, block, at)
-    class(deck), intent(inout) :: self
-    type(control_block), intent(in) :: block
-    type(deck_place), intent(in) :: at
-    type(control_block), allocatable :: longer(:)
-
-    if (self%open_blocks == size(self%blocks)) then
-      allocate (longer(2*self%open_blocks))
-      longer(1:self%open_blocks) = self%blocks
-      call move_alloc(longer, self%blocks)
-    end if
-    self%open_blocks = self%open_blocks + 1
-    self%blocks(self%open_blocks) = block
-    self%blocks(self%open_blocks)%at = at
-    self%blocks(self%open_blocks)%nesting = self%text%nesting()
-    self%active = block%active
-  end subroutine push_block
-
-  subroutine pop_block(self)
-    class(deck), intent(inout) :: self
-
-    self%active = self%blocks(self%open_blocks)%outer_active
-    self%open_blocks = self%open_blocks - 1
-  end subroutine pop_block
-
-  logical function find_block(self, kind, command, at, log)
-    !! Is the innermost block of this file of this kind? Others inside it are reported and closed.
-    class(deck), intent(inout) :: self
-    integer, intent(in) :: kind
-    character(*), intent(in) :: command
-    type(deck_place), intent(in) :: at
-    type(message_log), intent(inout) :: log
-    integer :: i
-
-    find_block = .false.
-    do i = self%open_blocks, 1, -1
-      if (self%blocks(i)%nesting /= self%text%nesting()) exit
-      find_block = self%blocks(i)%kind == kind
-      if (find_block) exit
-    end do
-    if (.not. find_block) then
-      call log%add_error(at, command, 'there is no ' // trim(opener(kind)) // &
-        ' before it in this file', '')
-      return
-    end if
-    do while (self%open_blocks > i)
-      call report_open(self%blocks(self%open_blocks), log)
-      call self%pop_block()
-    end do
-  end function find_block
-
-  subroutine close_blocks(self, log)
-    !! At the end of a file: what begins in it must have ended.
-    class(deck), intent(inout) :: self
-    type(message_log), intent(inout) :: log
-
-    do while (self%open_blocks > 0)
-      if (self%blocks(self%open_blocks)%nesting <= self%text%nesting()) return
-      call report_open(self%blocks(self%open_blocks), log)
-      call self%pop_block()
-    end do
-  end subroutine close_blocks
-
-  subroutine report_open(block, log)
-    type(control_block), intent(in) :: block
-    type(message_log), intent(inout) :: log
-
-    call log%add_error(block%at, trim(opener(block%kind)), 'this ' // trim(opener(block%kind)) // &
-      ' is not closed', merge('Its ENDIf is missing.', 'Its NEXT is missing. ', &
-        block%kind == if_block))
-  end subroutine report_open
-
-  pure function opener(kind)
-    integer, intent(in) :: kind
-    character(4) :: opener
-
-    opener = merge('IF  ', 'LOOP', kind == if_block)
-  end function opener
 end module deck_reader

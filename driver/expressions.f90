@@ -22,32 +22,21 @@ module expressions
   !! unknown, without a second problem.
   use kinds, only: wp
   use messages, only: name_hint, lower_case, quoted, whole_text
-  use number_text, only: read_number, write_number, equal
+  use number_text, only: read_number, equal
+  use expression_values, only: value, unknown_value, number_value, word_value, set_number, value_text
+  use expression_symbols, only: symbol_source, no_symbols
+  use expression_functions, only: functions, most_arguments, too_large, is_function, argument_range, &
+    function_value, power, is_zero
+  use expression_cursor, only: cursor_type, blanks, skip_blanks, ahead, next_is, next_is_either, &
+    go_deeper, fail, fail_value, unexpected, need_closing, need_number, need_numbers
   implicit none (type, external)
   private
-  public :: value, symbol_source, no_symbols, expression_problem
-  public :: unknown_value, number_value, word_value
-  public :: evaluate, is_name, is_reserved, value_text
+  public :: value, unknown_value, number_value, word_value, value_text
+  public :: symbol_source, no_symbols, expression_problem
+  public :: evaluate, is_name, is_reserved
 
-  integer, parameter :: unknown_value = 0   !! its problem has been reported
-  integer, parameter :: number_value = 1
-  integer, parameter :: word_value = 2
-
-  integer, parameter :: deepest = 200       !! nested parentheses, signs and powers
-  real(wp), parameter :: largest_log = 709.7_wp
-  character(*), parameter :: blanks = ' ' // achar(9)
   character(*), parameter :: name_characters = &
     'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_'
-  character(5), parameter :: functions(17) = [character(5) :: 'sin', 'cos', 'tan', 'asin', &
-    'acos', 'atan', &
-    'atan2', 'sqrt', 'exp', 'log', 'log10', 'abs', 'min', 'max', 'int', 'nint', 'floor']
-  character(5), parameter :: more_functions(1) = [character(5) :: 'mod']
-
-  type :: value
-    integer :: kind = unknown_value
-    real(wp) :: x = 0                       !! if it is a number
-    character(:), allocatable :: word       !! if it is a word
-  end type value
 
   type :: expression_problem
     logical :: found = .false.
@@ -56,79 +45,6 @@ module expressions
     character(:), allocatable :: name       !! the name that is not known, else ''
   end type expression_problem
 
-  type, abstract :: symbol_source
-    !! Where expressions find parameters and tables. Names arrive in lower case.
-  contains
-    procedure(find_symbol), deferred :: find_symbol
-    procedure(has_table), deferred :: has_table
-    procedure(has_key), deferred :: has_key
-    procedure(look_up), deferred :: look_up
-    procedure(symbol_hint), deferred :: symbol_hint
-  end type symbol_source
-
-  abstract interface
-    subroutine find_symbol(self, name, v, found)
-      import :: symbol_source, value
-      implicit none (type, external)
-      class(symbol_source), intent(in) :: self
-      character(*), intent(in) :: name
-      type(value), intent(out) :: v
-      logical, intent(out) :: found
-    end subroutine find_symbol
-
-    logical function has_table(self, name)
-      import :: symbol_source
-      implicit none (type, external)
-      class(symbol_source), intent(in) :: self
-      character(*), intent(in) :: name
-    end function has_table
-
-    logical function has_key(self, table, column, key)
-      import :: symbol_source
-      implicit none (type, external)
-      class(symbol_source), intent(in) :: self
-      character(*), intent(in) :: table
-      logical, intent(in) :: column          !! a column key, else a row key
-      character(*), intent(in) :: key
-    end function has_key
-
-    subroutine look_up(self, table, row, column, v, fact, remedy)
-      import :: symbol_source, value
-      implicit none (type, external)
-      class(symbol_source), intent(in) :: self
-      character(*), intent(in) :: table, row
-      character(*), intent(in) :: column     !! '': the only column
-      type(value), intent(out) :: v
-      character(:), allocatable, intent(out) :: fact, remedy   !! fact is '' if all is well
-    end subroutine look_up
-
-    function symbol_hint(self, name) result(hint)
-      import :: symbol_source
-      implicit none (type, external)
-      class(symbol_source), intent(in) :: self
-      character(*), intent(in) :: name
-      character(:), allocatable :: hint      !! remedy for a name that is not known
-    end function symbol_hint
-  end interface
-
-  type, extends(symbol_source) :: no_symbols
-    !! Plain arithmetic.
-  contains
-    procedure :: find_symbol => no_symbol
-    procedure :: has_table => no_table
-    procedure :: has_key => no_key
-    procedure :: look_up => no_look_up
-    procedure :: symbol_hint => no_hint
-  end type no_symbols
-
-  type :: parse_state
-    integer :: pos = 1                      ! next character
-    integer :: depth = 0
-    logical :: live = .true.                ! false beside a decided .and. or .or.
-    integer :: failed_at = 0                ! character of the problem; 0: none
-    character(:), allocatable :: fact, remedy, name
-  end type parse_state
-
 contains
 
   subroutine evaluate(text, symbols, v, problem)
@@ -136,7 +52,7 @@ contains
     class(symbol_source), intent(in) :: symbols        !! parameters and tables
     type(value), intent(out) :: v                      !! unknown after a problem
     type(expression_problem), intent(out) :: problem
-    type(parse_state) :: at
+    type(cursor_type) :: at
 
     problem%fact = ''
     problem%remedy = ''
@@ -162,7 +78,7 @@ contains
 
   recursive subroutine parse_or(text, at, symbols, v)
     character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
+    type(cursor_type), intent(inout) :: at
     class(symbol_source), intent(in) :: symbols
     type(value), intent(out) :: v
     type(value) :: b
@@ -180,7 +96,7 @@ contains
 
   recursive subroutine parse_and(text, at, symbols, v)
     character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
+    type(cursor_type), intent(inout) :: at
     class(symbol_source), intent(in) :: symbols
     type(value), intent(out) :: v
     type(value) :: b
@@ -198,7 +114,7 @@ contains
 
   subroutine join(at, live, b, decided, a)
     !! a = a .and. b (decided if a = 0) or a .or. b (decided if a = 1).
-    type(parse_state), intent(inout) :: at
+    type(cursor_type), intent(inout) :: at
     logical, intent(in) :: live             ! of the whole
     type(value), intent(in) :: b
     real(wp), intent(in) :: decided
@@ -218,7 +134,7 @@ contains
 
   recursive subroutine parse_not(text, at, symbols, v)
     character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
+    type(cursor_type), intent(inout) :: at
     class(symbol_source), intent(in) :: symbols
     type(value), intent(out) :: v
 
@@ -236,7 +152,7 @@ contains
 
   recursive subroutine parse_comparison(text, at, symbols, v)
     character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
+    type(cursor_type), intent(inout) :: at
     class(symbol_source), intent(in) :: symbols
     type(value), intent(out) :: v
     type(value) :: b
@@ -258,8 +174,7 @@ contains
       return
     end if
     if (v%kind /= b%kind) then
-      call fail(at, place, 'a number is compared with a word', '', .true.)
-      v%kind = unknown_value
+      call fail_value(at, place, 'a number is compared with a word', v)
       return
     end if
     if (v%kind == word_value) then
@@ -281,7 +196,7 @@ contains
 
   recursive subroutine parse_sum(text, at, symbols, v)
     character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
+    type(cursor_type), intent(inout) :: at
     class(symbol_source), intent(in) :: symbols
     type(value), intent(out) :: v
     type(value) :: b
@@ -300,7 +215,7 @@ contains
       call need_numbers(at, v, b, place)
       if (v%kind /= number_value) cycle
       if (max(exponent(v%x), exponent(b%x)) >= maxexponent(1.0_wp)) then
-        call too_large(at, place, v)
+        call fail_value(at, place, too_large, v)
       else
         v%x = merge(v%x - b%x, v%x + b%x, minus)
       end if
@@ -309,7 +224,7 @@ contains
 
   recursive subroutine parse_product(text, at, symbols, v)
     character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
+    type(cursor_type), intent(inout) :: at
     class(symbol_source), intent(in) :: symbols
     type(value), intent(out) :: v
     type(value) :: b
@@ -329,18 +244,17 @@ contains
       call need_numbers(at, v, b, place)
       if (v%kind /= number_value) cycle
       if (division .and. is_zero(b%x)) then
-        call fail(at, place, 'division by zero', '', .true.)
-        v%kind = unknown_value
+        call fail_value(at, place, 'division by zero', v)
       else if (is_zero(v%x) .or. is_zero(b%x)) then
         v%x = 0
       else if (division) then
         if (exponent(v%x) - exponent(b%x) >= maxexponent(1.0_wp)) then
-          call too_large(at, place, v)
+          call fail_value(at, place, too_large, v)
         else
           v%x = v%x/b%x
         end if
       else if (exponent(v%x) + exponent(b%x) > maxexponent(1.0_wp)) then
-        call too_large(at, place, v)
+        call fail_value(at, place, too_large, v)
       else
         v%x = v%x*b%x
       end if
@@ -349,7 +263,7 @@ contains
 
   recursive subroutine parse_sign(text, at, symbols, v)
     character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
+    type(cursor_type), intent(inout) :: at
     class(symbol_source), intent(in) :: symbols
     type(value), intent(out) :: v
     logical :: minus
@@ -374,11 +288,13 @@ contains
 
   recursive subroutine parse_power(text, at, symbols, v)
     character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
+    type(cursor_type), intent(inout) :: at
     class(symbol_source), intent(in) :: symbols
     type(value), intent(out) :: v
     type(value) :: b
     integer :: place
+    real(wp) :: x
+    character(:), allocatable :: fact
 
     call parse_primary(text, at, symbols, v)
     if (at%failed_at > 0) return
@@ -392,47 +308,15 @@ contains
     call parse_sign(text, at, symbols, b)
     at%depth = at%depth - 1
     call need_numbers(at, v, b, place)
-    if (v%kind == number_value) call raise(at, place, b%x, v)
+    if (v%kind /= number_value) return
+    x = v%x
+    call power(x, b%x, v%x, fact)
+    if (len(fact) > 0) call fail_value(at, place, fact, v)
   end subroutine parse_power
-
-  subroutine raise(at, place, b, v)
-    !! v = v^b.
-    type(parse_state), intent(inout) :: at
-    integer, intent(in) :: place
-    real(wp), intent(in) :: b
-    type(value), intent(inout) :: v
-    real(wp) :: magnitude
-    logical :: odd
-
-    if (is_zero(b)) then
-      v%x = 1
-    else if (is_zero(v%x)) then
-      if (b < 0) then
-        call fail(at, place, 'zero is raised to a negative power', '', .true.)
-        v%kind = unknown_value
-      end if
-    else if (v%x < 0 .and. .not. equal(aint(b), b)) then
-      call fail(at, place, 'a negative number is raised to a broken power', '', .true.)
-      v%kind = unknown_value
-    else
-      odd = .false.
-      if (v%x < 0) odd = equal(modulo(b, 2.0_wp), 1.0_wp)
-      magnitude = log(abs(v%x))
-      if (is_zero(magnitude)) then
-        v%x = 1
-      else if (abs(b) > largest_log/abs(magnitude)) then
-        if ((b > 0) .eqv. (magnitude > 0)) call too_large(at, place, v)
-        v%x = 0
-      else
-        v%x = abs(v%x)**b
-      end if
-      if (odd) v%x = -v%x
-    end if
-  end subroutine raise
 
   recursive subroutine parse_primary(text, at, symbols, v)
     character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
+    type(cursor_type), intent(inout) :: at
     class(symbol_source), intent(in) :: symbols
     type(value), intent(out) :: v
     integer :: used, last
@@ -482,7 +366,7 @@ contains
 
   recursive subroutine parse_name(text, at, symbols, v)
     character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
+    type(cursor_type), intent(inout) :: at
     class(symbol_source), intent(in) :: symbols
     type(value), intent(out) :: v
     character(:), allocatable :: name
@@ -506,7 +390,7 @@ contains
       else
         call fail(at, first, 'there is no function or table ' // &
           quoted(text(first:first+len(name)-1)), &
-          name_hint(name, [functions, more_functions], 'functions') // ' ' // &
+          name_hint(name, functions, 'functions') // ' ' // &
             symbols%symbol_hint(name))
       end if
       at%depth = at%depth - 1
@@ -525,26 +409,18 @@ contains
 
   recursive subroutine parse_function(text, at, symbols, name, first, v)
     character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
+    type(cursor_type), intent(inout) :: at
     class(symbol_source), intent(in) :: symbols
     character(*), intent(in) :: name
     integer, intent(in) :: first             ! where the name stands
     type(value), intent(out) :: v
-    integer, parameter :: most = 20
     type(value) :: b
-    real(wp) :: x(most)
+    real(wp) :: x(most_arguments)
     integer :: n, least, largest
     logical :: known
+    character(:), allocatable :: fact
 
-    least = 1
-    largest = 1
-    select case (name)
-    case ('atan2', 'mod')
-      least = 2
-      largest = 2
-    case ('min', 'max')
-      largest = most
-    end select
+    call argument_range(name, least, largest)
     x = 0
     n = 0
     known = .true.
@@ -555,14 +431,14 @@ contains
       if (at%failed_at > 0) return
       n = n + 1
       known = known .and. b%kind == number_value
-      if (n <= most) x(n) = b%x
+      if (n <= most_arguments) x(n) = b%x
       if (.not. next_is(text, at, ',')) exit
     end do
     call need_closing(text, at)
     if (at%failed_at > 0) return
     if (n < least .or. n > largest) then
-      if (largest == most) then
-        call fail(at, first, name // ' takes 1 to ' // whole_text(most) // ' arguments, not ' // &
+      if (largest == most_arguments) then
+        call fail(at, first, name // ' takes 1 to ' // whole_text(largest) // ' arguments, not ' // &
           whole_text(n), '')
       else
         call fail(at, first, name // ' takes ' // whole_text(least) // ' argument' // &
@@ -573,68 +449,13 @@ contains
     if (.not. known) return
     v%kind = number_value
 
-    select case (name)
-    case ('sin');   v%x = sin(x(1))
-    case ('cos');   v%x = cos(x(1))
-    case ('tan');   v%x = tan(x(1))
-    case ('atan');  v%x = atan(x(1))
-    case ('abs');   v%x = abs(x(1))
-    case ('min');   v%x = minval(x(:n))
-    case ('max');   v%x = maxval(x(:n))
-    case ('int');   v%x = aint(x(1))
-    case ('nint');  v%x = anint(x(1))
-    case ('floor')
-      v%x = aint(x(1))
-      if (v%x > x(1)) v%x = v%x - 1
-    case ('asin', 'acos')
-      if (abs(x(1)) > 1) then
-        call outside(at, first, name, x(1), v)
-      else if (name == 'asin') then
-        v%x = asin(x(1))
-      else
-        v%x = acos(x(1))
-      end if
-    case ('atan2')
-      if (.not. all(is_zero(x(1:2)))) then
-        v%x = atan2(x(1), x(2))
-      else
-        call outside(at, first, name, 0.0_wp, v)
-      end if
-    case ('sqrt')
-      if (x(1) < 0) then
-        call outside(at, first, name, x(1), v)
-      else
-        v%x = sqrt(x(1))
-      end if
-    case ('log', 'log10')
-      if (x(1) <= 0) then
-        call outside(at, first, name, x(1), v)
-      else if (name == 'log') then
-        v%x = log(x(1))
-      else
-        v%x = log10(x(1))
-      end if
-    case ('exp')
-      if (x(1) > largest_log) then
-        call too_large(at, first, v)
-      else
-        v%x = exp(x(1))
-      end if
-    case ('mod')
-      if (is_zero(x(2))) then
-        call fail(at, first, 'mod divides by zero', '', .true.)
-        v%kind = unknown_value
-      else
-        v%x = mod(x(1), x(2))
-      end if
-    case default
-      error stop 'expressions: a function without value'
-    end select
+    call function_value(name, x(:n), v%x, fact)
+    if (len(fact) > 0) call fail_value(at, first, fact, v)
   end subroutine parse_function
 
   recursive subroutine parse_table(text, at, symbols, name, first, v)
     character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
+    type(cursor_type), intent(inout) :: at
     class(symbol_source), intent(in) :: symbols
     character(*), intent(in) :: name
     integer, intent(in) :: first             ! where the name stands
@@ -656,7 +477,7 @@ contains
 
   recursive subroutine parse_key(text, at, symbols, table, is_column, key, known)
     character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
+    type(cursor_type), intent(inout) :: at
     class(symbol_source), intent(in) :: symbols
     character(*), intent(in) :: table
     logical, intent(in) :: is_column
@@ -698,155 +519,6 @@ contains
     end if
   end subroutine parse_key
 
-  subroutine need_numbers(at, a, b, place)
-    !! Both operands must be numbers; a becomes unknown if either is not.
-    type(parse_state), intent(inout) :: at
-    type(value), intent(inout) :: a
-    type(value), intent(in) :: b
-    integer, intent(in) :: place             ! character that a problem names
-    type(value) :: other
-
-    other = b
-    call need_number(at, a, place)
-    call need_number(at, other, place)
-    if (other%kind == unknown_value) a%kind = unknown_value
-  end subroutine need_numbers
-
-  subroutine need_number(at, a, place)
-    type(parse_state), intent(inout) :: at
-    type(value), intent(inout) :: a          ! becomes unknown if it is a word
-    integer, intent(in) :: place             ! character that a problem names
-
-    if (a%kind /= word_value) return
-    call fail(at, place, 'a number is needed, not the word ' // quoted(a%word), '', .true.)
-    a%kind = unknown_value
-  end subroutine need_number
-
-  subroutine need_closing(text, at)
-    character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
-
-    if (at%failed_at > 0) return
-    if (next_is(text, at, ')')) return
-    if (at%pos > len(text)) then
-      call fail(at, at%pos, '")" is missing', '')
-    else
-      call unexpected(text, at)
-    end if
-  end subroutine need_closing
-
-  subroutine go_deeper(at)
-    type(parse_state), intent(inout) :: at
-
-    at%depth = at%depth + 1
-    if (at%depth > deepest) call fail(at, at%pos, 'the expression is nested too deeply', &
-      'Split it with the help of parameters.')
-  end subroutine go_deeper
-
-  subroutine unexpected(text, at)
-    character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
-
-    call skip_blanks(text, at)
-    if (text(at%pos:at%pos) == '=') then
-      call fail(at, at%pos, '"=" is unexpected', 'Compare by "==".')
-    else
-      call fail(at, at%pos, quoted(text(at%pos:at%pos)) // ' is unexpected', '')
-    end if
-  end subroutine unexpected
-
-  subroutine outside(at, place, name, x, v)
-    type(parse_state), intent(inout) :: at
-    integer, intent(in) :: place
-    character(*), intent(in) :: name
-    real(wp), intent(in) :: x
-    type(value), intent(inout) :: v
-
-    call fail(at, place, name // ' is not defined for ' // write_number(x), '', .true.)
-    v%kind = unknown_value
-  end subroutine outside
-
-  subroutine too_large(at, place, v)
-    type(parse_state), intent(inout) :: at
-    integer, intent(in) :: place
-    type(value), intent(inout) :: v
-
-    call fail(at, place, 'the result is too large', '', .true.)
-    v%kind = unknown_value
-  end subroutine too_large
-
-  subroutine fail(at, place, fact, remedy, only_if_live)
-    !! Keeps the first problem. Problems of values count only where the value is used.
-    type(parse_state), intent(inout) :: at
-    integer, intent(in) :: place
-    character(*), intent(in) :: fact, remedy
-    logical, intent(in), optional :: only_if_live
-
-    if (at%failed_at > 0) return
-    if (present(only_if_live) .and. .not. at%live) return
-    at%failed_at = place
-    at%fact = fact
-    at%remedy = remedy
-    at%name = ''
-  end subroutine fail
-
-  pure subroutine skip_blanks(text, at)
-    character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
-
-    do while (at%pos <= len(text))
-      if (index(blanks, text(at%pos:at%pos)) == 0) return
-      at%pos = at%pos + 1
-    end do
-  end subroutine skip_blanks
-
-  logical function next_is(text, at, symbol)
-    !! Takes the symbol if it comes next, after blanks.
-    character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
-    character(*), intent(in) :: symbol       ! lower case
-
-    next_is = .false.
-    if (at%failed_at > 0) return
-    call skip_blanks(text, at)
-    next_is = ahead(text, at, symbol)
-    if (next_is) at%pos = at%pos + len(symbol)
-  end function next_is
-
-  logical function next_is_either(text, at, symbol, other)
-    character(*), intent(in) :: text
-    type(parse_state), intent(inout) :: at
-    character(*), intent(in) :: symbol, other
-
-    next_is_either = next_is(text, at, symbol)
-    if (.not. next_is_either) next_is_either = next_is(text, at, other)
-  end function next_is_either
-
-  elemental logical function is_zero(x)
-    real(wp), intent(in) :: x
-
-    is_zero = equal(x, 0.0_wp)
-  end function is_zero
-
-  pure logical function ahead(text, at, symbol)
-    character(*), intent(in) :: text
-    type(parse_state), intent(in) :: at
-    character(*), intent(in) :: symbol
-
-    ahead = .false.
-    if (at%pos + len(symbol) - 1 > len(text)) return
-    ahead = lower_case(text(at%pos:at%pos+len(symbol)-1)) == symbol
-  end function ahead
-
-  pure subroutine set_number(v, x)
-    type(value), intent(inout) :: v
-    real(wp), intent(in) :: x
-
-    v%kind = number_value
-    v%x = x
-    if (allocated(v%word)) deallocate (v%word)
-  end subroutine set_number
-
   pure logical function is_name(text)
     !! A letter, then letters, digits and underscores.
     character(*), intent(in) :: text
@@ -856,82 +528,10 @@ contains
     is_name = verify(text, name_characters) == 0 .and. verify(text(1:1), '0123456789_') > 0
   end function is_name
 
-  pure logical function is_function(name)
-    character(*), intent(in) :: name         !! lower case
-
-    is_function = any(functions == name) .or. any(more_functions == name)
-  end function is_function
-
   pure logical function is_reserved(name)
     !! Names that a parameter or table cannot have.
     character(*), intent(in) :: name         !! any case
 
     is_reserved = is_function(lower_case(name)) .or. lower_case(name) == 'pi'
   end function is_reserved
-
-  pure function value_text(v) result(text)
-    type(value), intent(in) :: v
-    character(:), allocatable :: text        !! the word, or the number (whole ones without a point)
-
-    select case (v%kind)
-    case (word_value);   text = v%word
-    case (number_value); text = write_number(v%x)
-    case default;        text = ''
-    end select
-  end function value_text
-
-  subroutine no_symbol(self, name, v, found)
-    class(no_symbols), intent(in) :: self
-    character(*), intent(in) :: name
-    type(value), intent(out) :: v
-    logical, intent(out) :: found
-
-    associate (unused => self, also => name)
-    end associate
-    v%kind = unknown_value
-    found = .false.
-  end subroutine no_symbol
-
-  logical function no_table(self, name)
-    class(no_symbols), intent(in) :: self
-    character(*), intent(in) :: name
-
-    associate (unused => self, also => name)
-    end associate
-    no_table = .false.
-  end function no_table
-
-  logical function no_key(self, table, column, key)
-    class(no_symbols), intent(in) :: self
-    character(*), intent(in) :: table
-    logical, intent(in) :: column
-    character(*), intent(in) :: key
-
-    associate (unused => self, also => table, again => column, too => key)
-    end associate
-    no_key = .false.
-  end function no_key
-
-  subroutine no_look_up(self, table, row, column, v, fact, remedy)
-    class(no_symbols), intent(in) :: self
-    character(*), intent(in) :: table, row, column
-    type(value), intent(out) :: v
-    character(:), allocatable, intent(out) :: fact, remedy
-
-    associate (unused => self, also => row, too => column)
-    end associate
-    v%kind = unknown_value
-    fact = 'there is no table ' // quoted(table)
-    remedy = ''
-  end subroutine no_look_up
-
-  function no_hint(self, name) result(hint)
-    class(no_symbols), intent(in) :: self
-    character(*), intent(in) :: name
-    character(:), allocatable :: hint
-
-    associate (unused => self, also => name)
-    end associate
-    hint = ''
-  end function no_hint
 end module expressions

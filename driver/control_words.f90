@@ -1,0 +1,53 @@
+module control_words
+  !! The words that the reader of a deck acts on itself, wherever they stand (module deck_reader lists them), and the
+  !! words that begin and end the solution part.
+  use messages, only: lower_case
+  implicit none (type, external)
+  private
+  public :: control_word
+
+contains
+
+  pure function control_word(text) result(word)
+    !! if, elif, else, endi, loop, next, incl, para, tabl, inte, batc, end; '' for anything else.
+    character(*), intent(in) :: text
+    character(4) :: word
+    character(:), allocatable :: first
+    integer :: n, k
+
+    word = ''
+    if (len(text) < 2) return
+    if (scan(text(1:1), 'ieElLnNpPtTbBI') == 0) return
+    n = scan(text, ' ,=(') - 1
+    if (n < 0) n = len(text)
+    first = lower_case(text(1:n))
+    k = verify(text(n+1:), ' ')
+    if (k > 0) then
+      k = k + n
+      if (text(k:k) == '=' .and. text(k:min(k+1, len(text))) /= '==') return
+    end if
+    select case (first)
+    case ('if', 'end')
+      word = first
+      return
+    case ('else')
+      word = 'else'
+      if (k > 0) then
+        if (lower_case(text(k:min(k+1, len(text)))) == 'if' .and. verify(text(k+2:min(k+2, &
+          len(text))), ' (') == 0) &
+          word = 'elif'
+      end if
+      return
+    end select
+    if (n < 4) return
+    select case (first(1:4))
+    case ('loop', 'next', 'incl', 'para', 'tabl', 'batc', 'endi')
+      word = first(1:4)
+    case ('else')
+      word = 'else'
+      if (first(5:) == 'if') word = 'elif'
+    case ('inte')
+      if (n == 4 .or. first(5:min(6, n)) == 'ra') word = 'inte'
+    end select
+  end function control_word
+end module control_words
