@@ -51,8 +51,9 @@ module deck_reader
   use number_text, only: equal
   use expressions, only: symbol_source, value, expression_problem, evaluate, value_text, &
     number_value, word_value
-  use control_words, only: control_word
-  use deck_record, only: record, logical_line, blank_line, command_form
+  use command_words, only: control_word, command_form
+  use logical_lines, only: logical_line, blank_line
+  use deck_record, only: record
   use deck_source, only: source, line_read, deck_ended
   use deck_substitution, only: substitute
   use deck_blocks, only: control_block, block_stack, if_block, loop_block

@@ -34,23 +34,12 @@ module deck_record
   use kinds, only: wp
   use messages, only: deck_place, message_log, name_hint, lower_case, quoted, whole_text
   use number_text, only: read_number, write_number, equal
+  use logical_lines, only: logical_line
   use expressions, only: symbol_source, value, expression_problem, evaluate, &
     unknown_value, word_value
   implicit none (type, external)
   private
-  public :: record, logical_line, blank_line, append_text, command_form
-
-  type :: logical_line
-    !! A line without comment, its continuations joined. Buffers only grow, so that reading
-    !! allocates nothing.
-    character(:), allocatable :: text       !! text(1:n) counts
-    integer :: n = 0
-    type(deck_place) :: at                  !! where it begins
-    integer :: joins = 0                    !! continuations
-    integer, allocatable :: join_column(:)  !! character of text where continuation k begins
-    integer, allocatable :: join_line(:)    !! its line in the file
-    character(:), allocatable :: comment    !! of the first line, kept only if asked for
-  end type logical_line
+  public :: record
 
   type :: record
     type(deck_place) :: at                  !! where the record begins
@@ -602,44 +591,4 @@ contains
     command = ''
     if (allocated(self%command)) command = self%command
   end function shown_command
-
-  pure function command_form(word) result(command)
-    !! FEAP's way to write a command: CONTact.
-    character(*), intent(in) :: word
-    character(len(word)) :: command
-    integer :: i
-
-    command = lower_case(word)
-    do i = 1, min(4, len(word))
-      if (command(i:i) >= 'a' .and. &
-        command(i:i) <= 'z') command(i:i) = achar(iachar(command(i:i)) - 32)
-    end do
-  end function command_form
-
-  pure subroutine blank_line(line)
-    !! Empties the line and keeps its buffers.
-    type(logical_line), intent(inout) :: line
-
-    line%n = 0
-    line%joins = 0
-    if (.not. allocated(line%text)) then
-      allocate (character(256) :: line%text)
-      allocate (line%join_column(4), line%join_line(4))
-    end if
-    if (allocated(line%comment)) deallocate (line%comment)
-  end subroutine blank_line
-
-  pure subroutine append_text(line, text)
-    type(logical_line), intent(inout) :: line
-    character(*), intent(in) :: text
-    character(:), allocatable :: larger
-
-    if (line%n + len(text) > len(line%text)) then
-      allocate (character(2*(line%n + len(text))) :: larger)
-      larger(1:line%n) = line%text(1:line%n)
-      call move_alloc(larger, line%text)
-    end if
-    line%text(line%n+1:line%n+len(text)) = text
-    line%n = line%n + len(text)
-  end subroutine append_text
 end module deck_record

@@ -11,7 +11,7 @@ module deck_source
   use, intrinsic :: iso_fortran_env, only: iostat_end
   use kinds, only: i8
   use messages, only: deck_place, message_log, quoted
-  use deck_record, only: logical_line, blank_line, append_text
+  use logical_lines, only: logical_line, blank_line, append_text
   implicit none (type, external)
   private
   public :: source, source_mark, line_read, file_ended, deck_ended

@@ -2,7 +2,7 @@ module deck_substitution
   !! {expr} in a line of a deck: the value takes its place before the line is split into items.
   use messages, only: message_log, quoted
   use expressions, only: symbol_source, value, expression_problem, evaluate, value_text, unknown_value
-  use deck_record, only: logical_line, blank_line, append_text
+  use logical_lines, only: logical_line, blank_line, append_text
   implicit none (type, external)
   private
   public :: substitute

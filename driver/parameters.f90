@@ -23,6 +23,7 @@ module parameters
     is_reserved, value_text, &
     unknown_value, number_value, word_value
   use deck_record, only: record
+  use deck_tables, only: table_list
   implicit none (type, external)
   private
   public :: deck_parameters, setting, command_line_place
@@ -52,18 +53,10 @@ module parameters
     logical :: is_set = .false.             ! by the command line
   end type parameter_entry
 
-  type :: table_entry
-    character(:), allocatable :: name, key
-    type(string), allocatable :: columns(:), rows(:)
-    type(value), allocatable :: cells(:,:)  ! (columns, rows)
-    logical :: has_header = .false.
-    logical :: has_problem = .false.        ! reported when the table was read
-  end type table_entry
-
   type, extends(symbol_source) :: deck_parameters
     private
     type(parameter_entry), allocatable :: list(:)
-    type(table_entry), allocatable :: tables(:)
+    type(table_list) :: tables
     type(setting), allocatable :: settings(:)
     logical, allocatable :: used(:)         ! settings that the deck has asked for
   contains
@@ -83,7 +76,6 @@ module parameters
     procedure :: look_up
     procedure :: symbol_hint
     procedure, private :: index_of
-    procedure, private :: table_index
     procedure, private :: add_entry
     procedure, private :: names
     procedure, private :: use_setting
@@ -105,7 +97,8 @@ contains
     self%settings = settings
     allocate (self%used(size(settings)))
     self%used = .false.
-    allocate (self%list(0), self%tables(0))
+    allocate (self%list(0))
+    call self%tables%start()
   end subroutine start
 
   integer function parameter_count(self)
@@ -161,7 +154,7 @@ contains
       call log%add_error(at, command, quoted(name) // ' is no name of a parameter', &
         'A name is a letter, then letters, digits and underscores.')
       return
-    else if (is_reserved(name) .or. self%table_index(lower_case(name)) > 0) then
+    else if (is_reserved(name) .or. self%tables%index_of(lower_case(name)) > 0) then
       call log%add_error(at, command, 'the name ' // quoted(name) // &
         ' belongs to a function or table', &
         'Choose another.')
@@ -448,75 +441,16 @@ contains
     character(*), intent(in) :: name
     type(deck_place), intent(in) :: at
     type(message_log), intent(inout) :: log
-    type(table_entry), allocatable :: longer(:)
-    integer :: i
 
-    allocate (longer(size(self%tables)+1))
-    do i = 1, size(self%tables)
-      longer(i) = self%tables(i)
-    end do
-    if (self%table_index(lower_case(name)) > 0) call log%add_error(at, 'TABLe', &
-      'the table ' // quoted(name) // ' is given twice', '')
-    call move_alloc(longer, self%tables)
-    i = size(self%tables)
-    self%tables(i)%name = name
-    self%tables(i)%key = lower_case(name)
-    allocate (self%tables(i)%columns(0), self%tables(i)%rows(0), self%tables(i)%cells(0,0))
-    if (is_name(name) .and. .not. is_reserved(name) .and. &
-      self%index_of(lower_case(name)) == 0) return
-    self%tables(i)%has_problem = .true.
-    call log%add_error(at, 'TABLe', quoted(name) // ' cannot be the name of a table', &
-      'A name is a letter, then letters, digits and underscores, and has no other meaning.')
+    call self%tables%begin(name, self%index_of(lower_case(name)) > 0, at, log)
   end subroutine begin_table
 
   subroutine add_table_line(self, rec, log)
     class(deck_parameters), intent(inout) :: self
     type(record), intent(in) :: rec         !! column keys, or a row key and its values
     type(message_log), intent(inout) :: log
-    type(string), allocatable :: rows(:)
-    type(value), allocatable :: cells(:,:)
-    type(value) :: v
-    integer :: i, k, n
 
-    associate (table => self%tables(size(self%tables)))
-      if (.not. table%has_header) then
-        table%has_header = .true.
-        deallocate (table%columns, table%cells)
-        allocate (table%columns(rec%count), table%cells(rec%count,0))
-        do i = 1, rec%count
-          table%columns(i)%s = rec%word(i)
-        end do
-        return
-      end if
-      n = size(table%columns)
-      if (rec%count /= n + 1) then
-        table%has_problem = .true.
-        call rec%check_count(n + 1, n + 1, log, 'a row key and a value for each column')
-        return
-      end if
-      do k = 1, size(table%rows)
-        if (lower_case(table%rows(k)%s) == lower_case(rec%word(1))) then
-          call rec%add_error(log, 'the row ' // quoted(rec%word(1)) // ' is given twice', '')
-          return
-        end if
-      end do
-      allocate (rows(size(table%rows)+1), cells(n,size(table%rows)+1))
-      do k = 1, size(table%rows)
-        rows(k)%s = table%rows(k)%s
-        do i = 1, n
-          cells(i,k) = table%cells(i,k)
-        end do
-      end do
-      k = size(rows)
-      rows(k)%s = rec%word(1)
-      do i = 1, n
-        call rec%item_value(i + 1, v, log, 'a number or a word in quotes', 'column ' // &
-          table%columns(i)%s)
-        cells(i,k) = v
-      end do
-      call move_alloc(rows, table%rows)
-      call move_alloc(cells, table%cells)
-    end associate
+    call self%tables%add_line(rec, log)
   end subroutine add_table_line
 
   subroutine check_settings(self, log)
@@ -562,15 +496,6 @@ contains
     end do
   end function index_of
 
-  integer function table_index(self, key)
-    class(deck_parameters), intent(in) :: self
-    character(*), intent(in) :: key         ! in lower case
-
-    do table_index = size(self%tables), 1, -1
-      if (self%tables(table_index)%key == key) return
-    end do
-  end function table_index
-
   subroutine find_symbol(self, name, v, found)
     class(deck_parameters), intent(in) :: self
     character(*), intent(in) :: name        !! in lower case
@@ -587,7 +512,7 @@ contains
     class(deck_parameters), intent(in) :: self
     character(*), intent(in) :: name        !! in lower case
 
-    has_table = self%table_index(name) > 0
+    has_table = self%tables%index_of(name) > 0
   end function has_table
 
   logical function has_key(self, table, column, key)
@@ -595,24 +520,9 @@ contains
     character(*), intent(in) :: table       !! in lower case
     logical, intent(in) :: column           !! a column key, else a row key
     character(*), intent(in) :: key         !! in lower case
-    integer :: i
 
-    i = self%table_index(table)
-    if (column) then
-      has_key = key_index(self%tables(i)%columns, key) > 0
-    else
-      has_key = key_index(self%tables(i)%rows, key) > 0
-    end if
+    has_key = self%tables%has_key(table, column, key)
   end function has_key
-
-  pure integer function key_index(keys, key)
-    type(string), intent(in) :: keys(:)
-    character(*), intent(in) :: key
-
-    do key_index = size(keys), 1, -1
-      if (lower_case(keys(key_index)%s) == lower_case(key)) return
-    end do
-  end function key_index
 
   subroutine look_up(self, table, row, column, v, fact, remedy)
     class(deck_parameters), intent(in) :: self
@@ -620,29 +530,8 @@ contains
     character(*), intent(in) :: row, column !! keys, any case; column '': the only one
     type(value), intent(out) :: v
     character(:), allocatable, intent(out) :: fact, remedy
-    integer :: i, j, k
 
-    fact = ''
-    remedy = ''
-    i = self%table_index(table)
-    if (self%tables(i)%has_problem) return
-    associate (t => self%tables(i))
-      k = key_index(t%rows, row)
-      j = key_index(t%columns, column)
-      if (len(column) == 0 .and. size(t%columns) == 1) j = 1
-      if (k == 0) then
-        fact = 'the table ' // quoted(t%name) // ' has no row ' // quoted(row)
-        remedy = known_names(t%rows, 'rows')
-      else if (len(column) == 0 .and. j == 0) then
-        fact = 'the table ' // quoted(t%name) // ' needs a row and a column'
-        remedy = known_names(t%columns, 'columns')
-      else if (j == 0) then
-        fact = 'the table ' // quoted(t%name) // ' has no column ' // quoted(column)
-        remedy = known_names(t%columns, 'columns')
-      else
-        v = t%cells(j,k)
-      end if
-    end associate
+    call self%tables%look_up(table, row, column, v, fact, remedy)
   end subroutine look_up
 
   function symbol_hint(self, name) result(hint)
@@ -657,12 +546,9 @@ contains
       list(i)%s = self%list(i)%name
     end do
     hint = name_hint(name, list, 'parameters')
-    if (size(self%tables) == 0) return
     deallocate (list)
-    allocate (list(size(self%tables)))
-    do i = 1, size(list)
-      list(i)%s = self%tables(i)%name
-    end do
+    list = self%tables%names()
+    if (size(list) == 0) return
     hint = hint // ' ' // known_names(list, 'tables')
   end function symbol_hint
 end module parameters

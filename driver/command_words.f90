@@ -1,10 +1,10 @@
-module control_words
-  !! The words that the reader of a deck acts on itself, wherever they stand (module deck_reader lists them), and the
-  !! words that begin and end the solution part.
+module command_words
+  !! The words that begin the lines of a deck: those that the reader acts on itself (module deck_reader lists them) with
+  !! those that begin and end the solution part, and the way in which messages write any of them.
   use messages, only: lower_case
   implicit none (type, external)
   private
-  public :: control_word
+  public :: control_word, command_form
 
 contains
 
@@ -50,4 +50,17 @@ contains
       if (n == 4 .or. first(5:min(6, n)) == 'ra') word = 'inte'
     end select
   end function control_word
-end module control_words
+
+  pure function command_form(word) result(command)
+    !! FEAP's way to write a command: CONTact.
+    character(*), intent(in) :: word
+    character(len(word)) :: command
+    integer :: i
+
+    command = lower_case(word)
+    do i = 1, min(4, len(word))
+      if (command(i:i) >= 'a' .and. &
+        command(i:i) <= 'z') command(i:i) = achar(iachar(command(i:i)) - 32)
+    end do
+  end function command_form
+end module command_words
