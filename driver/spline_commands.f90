@@ -34,6 +34,7 @@ module spline_commands
   use extraction_mesh, only: extraction_mesh_type, problem_list, used_by_elements, &
     repeated_elements, names_a_node_twice, set_of_nodes, set_of_elements
   use mesh_files, only: read_mesh_file, report_problems
+  use file_system, only: file_exists, folder_exists
   implicit none (type, external)
   private
   public :: read_spline_file, read_export, follow_tied_nodes
@@ -70,6 +71,13 @@ contains
     if (len(name) == 0) name = stem(file)
     if (log%error_count() == error_count) then
       path = beside(command%at%file, file)
+      if (.not. file_exists(path) .or. folder_exists(path)) then
+        call command%add_error(log, 'there is no file ' // quoted(path), &
+          'The name is relative to the deck; put it in quotes')
+        draft%has_lost_file = .true.
+        call pass_lines(deck, log)
+        return
+      end if
       call read_mesh_file(path, mesh, problems)
       if (problems%count == 0 .and. model%ndm == 2) call check_plane(mesh, problems)
       call report_problems(problems, path, 'T-SPline', command%at%order, log)
