@@ -91,6 +91,11 @@ contains
     call count_steps(program, run%steps_in_all)
     call log%put(text(run%eq%system%map%neq)//' equations, '//text(run%eq%point_count)//' interface points')
     call execute(model, program, run, results, log, clock, code)
+    if (code == exit_done .and. restart .and. run%step <= run%resumed_step) then
+      ! killed after the last step: its fields may be missing
+      call restore_last_state(model, run, clock)
+      call leave_last_state(model, run, results, clock, run%step)
+    end if
     if (code == exit_done .and. run%step > run%resumed_step) call leave_last_state(model, run, results, clock, run%step)
     if (allocated(results%fault)) then
       call log%put('error: '//results%fault)
@@ -224,6 +229,8 @@ contains
     if (status /= ok) then
       call log%put('step '//text(run%step)//' failed after '//text(report%cutbacks)//' cut-backs at time ' &
         //number(run%eq%time_n)//': '//report%last%fault)
+      if (size(model%props) > 0) call log%put('a smaller DT, a smaller penalty, more elements or more Gauss points on the '// &
+        'slave surface may help; PRINt shows the iterations')
       if (size(model%props) == 0) call log%put('without PROPortional everything acts at once, and halving a step does '// &
         'not help: add PROPortional 1, then lines of time and value')
       call restore_last_state(model, run, clock)

@@ -27,6 +27,7 @@ module field_output
     procedure :: begin
     procedure :: resume
     procedure :: write => write_output
+    procedure :: has_step
     procedure, private :: note
   end type field_output_type
 
@@ -174,6 +175,19 @@ contains
     end if
     if (folder%failed) call self%note(folder%message)
   end subroutine write_output
+
+  function has_step(self, step) result(yes)
+    !! Whether the fields of a step are in the lists.
+    class(field_output_type), intent(in) :: self
+    integer, intent(in) :: step
+    logical :: yes
+    integer :: i
+
+    yes = .false.
+    do i = 1, self%cell_files%n
+      yes = yes .or. self%cell_files%files(i)%text == numbered('fields', step)
+    end do
+  end function has_step
 
   pure function numbered(base, step) result(name)
     character(*), intent(in) :: base

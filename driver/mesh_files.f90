@@ -6,6 +6,7 @@ module mesh_files
   use extraction_file, only: read_extraction_file, text_format, unknown_format, load_text
   use mesh_facts, only: facts_type, gather_facts, set_size
   use mesh_store, only: read_mesh_store, is_mesh_store
+  use model_summary, only: degrees_text
   implicit none (type, external)
   private
   public :: read_mesh_file, is_mesh_file, report_problems, check_mesh_file
@@ -92,7 +93,7 @@ contains
       write (unit, '(a,i0,a,i0,a)') 'nodes       ', mesh%nn - facts%unused, ' (', facts%unused, ' unused besides)'
       write (unit, '(a,i0,a,i0,a,i0,a)') 'elements    ', set%ne, ' (', set%nop, ' different operators, ', &
         facts%repeated, ' elements repeat another exactly)'
-      write (unit, '(a)') 'degrees     '//degrees_text(mesh)
+      write (unit, '(a)') 'degrees     '//degrees_text(mesh%elements)
       write (unit, '(a,i0,a,i0)') 'functions   per element ', facts%nen_min, ' to ', facts%nen_max
       write (unit, '(a,es7.1)') 'operators   column sums differ from 1 by at most ', facts%column_error
       write (unit, '(a,es8.1,a,i0,a,i0,a)') 'operators   smallest coefficient ', facts%smallest, ', ', facts%negative, &
@@ -132,30 +133,4 @@ contains
     end if
     text = trim(adjustl(buffer))
   end function twelve_places
-
-  function degrees_text(mesh) result(text)
-    !! The different degrees, with the number of their elements.
-    type(extraction_mesh_type), intent(in) :: mesh
-    character(:), allocatable :: text
-    integer, allocatable :: code(:)
-    integer :: e, i, first
-
-    allocate (code(mesh%elements%ne))
-    do e = 1, mesh%elements%ne
-      code(e) = dot_product([1000000, 1000, 1], mesh%elements%degree(:, e))
-    end do
-    text = ''
-    do
-      first = findloc(code >= 0, .true., dim=1)
-      if (first == 0) exit
-      if (len(text) > 0) text = text//', '
-      do i = 1, mesh%elements%dp(first)
-        if (i > 1) text = text//' x '
-        text = text//whole_text(mesh%elements%degree(i, first))
-      end do
-      i = code(first)
-      text = text//' ('//whole_text(count(code == i))//' elements)'
-      where (code == i) code = -1
-    end do
-  end function degrees_text
 end module mesh_files

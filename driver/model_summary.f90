@@ -3,6 +3,7 @@ module model_summary
   !! interfaces.
   use kinds, only: wp
   use status_codes, only: ok
+  use extraction_set, only: extraction_set_type
   use number_text, only: write_number
   use messages, only: whole_text
   use model_data, only: model_type, set_nodes, set_elements, set_surface
@@ -13,7 +14,7 @@ module model_summary
   use surface_frame, only: tangent_frame_at
   implicit none (type, external)
   private
-  public :: describe_model, element_measure
+  public :: describe_model, degrees_text, element_measure
 
 contains
 
@@ -38,7 +39,7 @@ contains
     write (unit, '(a,i0,a,i0)') 'functions   per element ', minval([(model%mesh%nen(e), e = 1, &
       model%mesh%ne)]), &
       ' to ', maxval([(model%mesh%nen(e), e = 1, model%mesh%ne)])
-    write (unit, '(a)') 'degrees     ' // degrees_text(model)
+    write (unit, '(a)') 'degrees     ' // degrees_text(model%mesh)
     do i = 1, maxval(model%body_of)
       if (any(model%body_of == i)) call describe_body(model, i, unit)
     end do
@@ -131,22 +132,25 @@ contains
     end do
   end function element_measure
 
-  function degrees_text(model) result(text)
+  function degrees_text(mesh) result(text)
     !! The different degrees, with the number of their elements.
-    type(model_type), intent(in) :: model
+    type(extraction_set_type), intent(in) :: mesh
     character(:), allocatable :: text
-    integer :: code(model%mesh%ne)
+    integer, allocatable :: code(:)
     integer :: e, i, first
 
-    code = [(dot_product([10000, 100, 1], model%mesh%degree(:, e)), e = 1, model%mesh%ne)]
+    allocate (code(mesh%ne))
+    do e = 1, mesh%ne
+      code(e) = dot_product([1000000, 1000, 1], mesh%degree(:, e))
+    end do
     text = ''
     do
       first = findloc(code >= 0, .true., dim=1)
       if (first == 0) exit
       if (len(text) > 0) text = text // ', '
-      do i = 1, model%mesh%dp(first)
+      do i = 1, mesh%dp(first)
         if (i > 1) text = text // ' x '
-        text = text // whole_text(model%mesh%degree(i, first))
+        text = text // whole_text(mesh%degree(i, first))
       end do
       i = code(first)
       text = text // ' (' // whole_text(count(code == i)) // ' elements)'

@@ -65,6 +65,7 @@ contains
       has_interface(model), provenance, step, time)
     if (self%fields%failed) call self%note(self%fields%message)
     self%fields_begun = .true.
+    if (self%fields%has_step(step)) self%last_field_step = step
   end subroutine resume
 
   pure function has_interface(model) result(yes)

@@ -35,6 +35,12 @@ for trial in $(seq "$kills"); do
   fi
   cmp -s whole/fields.pvd broken/fields.pvd || { echo "trial $trial: fields.pvd differs"; failures=1; }
 done
+# killed after the last step but before its fields were written: they are written, and only then
+cp -r whole late
+sed -i '/fields_000060/d' late/fields.pvd
+"$BEZEL" "${arguments[@]}" --out late --restart >late.txt 2>&1 || { echo "the restart after the last step fails"; failures=1; }
+cmp whole/fields.pvd late/fields.pvd || failures=1
+cmp whole/history.csv late/history.csv || failures=1
 # other parameters are refused with status 2
 "$BEZEL" "$deck" basis=N p=3 last=60 --out whole --restart >refused.txt 2>&1
 [ $? -eq 2 ] || { echo "a restart with another parameter must be refused with status 2"; failures=1; }
