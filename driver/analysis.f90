@@ -4,11 +4,12 @@ module analysis
   use kinds, only: wp
   use status_codes, only: ok
   use model_data, only: model_type
-  use solution_commands, only: solution_program, do_dt, do_time, do_loop, do_next, do_solve, do_tolerance, do_print, &
-    do_line_search, do_cutback, do_backend, do_predictor
+  use solution_commands, only: solution_command, solution_program, do_dt, do_time, do_loop, do_next, do_solve, &
+    do_tolerance, do_print, do_line_search, do_cutback, do_backend, do_predictor, do_path
   use equilibrium, only: equilibrium_type, start_equilibrium, form_equilibrium
   use newton, only: newton_settings, newton_report
   use step_control, only: step_control_type, step_report, start_control, advance
+  use path_control, only: path_control_type, start_path, advance_path, path_off, by_time, by_dissipation
   use linear_solver, only: backend_name, ordering_name, backend_cholmod
   use restart_state, only: read_restart
   use result_frame, only: named_text_type
@@ -33,6 +34,7 @@ module analysis
   type :: run_state
     type(equilibrium_type) :: eq
     type(step_control_type) :: control
+    type(path_control_type) :: path
     type(newton_settings) :: settings
     real(wp) :: dt = 1, target_time = 0
     real(wp) :: dt_began = 0             !! time when DT was set
@@ -77,7 +79,7 @@ contains
     call start_control(run%control, model)
     if (restart) then
       call read_restart(results%folder%file('restart.h5'), results%identity, run%resumed_step, run%eq, run%control, &
-                        message)
+                        run%path, message)
       if (allocated(message)) then
         call log%put('error: '//message)
         code = exit_deck
@@ -147,7 +149,13 @@ contains
           run%dt = command%value(1)
           run%dt_began = run%target_time
           run%dt_count = 0
+        case (do_path)
+          call set_path(command, run, results)
         case (do_time)
+          if (path_is_done(run)) then
+            at = at + 1
+            cycle
+          end if
           run%dt_count = run%dt_count + 1
           run%target_time = run%dt_began + run%dt_count*run%dt
           run%step = run%step + 1
@@ -191,6 +199,32 @@ contains
     end do
   end subroutine execute
 
+  subroutine set_path(command, run, results)
+    !! PATH. A restart has read the state of the path: commands that lie behind it change nothing.
+    type(solution_command), intent(in) :: command
+    type(run_state), intent(inout) :: run
+    type(run_results_type), intent(inout) :: results
+
+    results%time_is_step = results%time_is_step .or. command%count /= path_off
+    if (run%step >= run%resumed_step) then
+      call start_path(run%path, command%count, command%value(1))
+      run%path%most_length = command%value(2)
+      run%path%until = command%value(3)
+      run%path%wanted_iterations = command%other
+      run%path%began = run%eq%time_n
+    end if
+    run%dt_began = run%path%began     ! for TIMEs after PATH OFF
+    run%dt_count = 0
+  end subroutine set_path
+
+  pure function path_is_done(run) result(yes)
+    !! Whether path following has come to its last time; in a restart, not before its first step.
+    type(run_state), intent(in) :: run
+    logical :: yes
+
+    yes = run%path%asked /= path_off .and. run%step >= run%resumed_step .and. run%eq%time_n >= run%path%until
+  end function path_is_done
+
   pure function is_newton_loop(program, at) result(yes)
     type(solution_program), intent(in) :: program
     integer, intent(in) :: at
@@ -212,6 +246,7 @@ contains
     type(step_report) :: report
     integer :: status
     real(wp) :: before
+    logical :: advanced
 
     if (run%step == 0) then   ! TANG without TIME: a load at its present factor
       run%target_time = run%target_time + run%dt
@@ -219,9 +254,17 @@ contains
       run%steps_in_all = 1
     end if
     if (run%step <= run%resumed_step) return
-    if (.not. run%target_time > run%eq%time_n) return
     before = run%eq%time_n
-    call advance(model, run%eq, run%settings, run%control, run%target_time, clock, report, status)
+    if (run%path%asked /= path_off) then
+      if (path_is_done(run)) return
+      run%path%most_time = run%dt
+      call advance_path(model, run%eq, run%settings, run%control, run%path, clock, report, status)
+      advanced = status == ok
+    else
+      if (.not. run%target_time > run%eq%time_n) return
+      call advance(model, run%eq, run%settings, run%control, run%target_time, clock, report, status)
+      advanced = run%eq%time_n > before
+    end if
     run%iterations = run%iterations + report%iterations
     run%cutbacks = run%cutbacks + report%cutbacks
     if (run%print_iterations) call log_iterations(report%last, log)
@@ -236,19 +279,19 @@ contains
       call restore_last_state(model, run, clock)
       call log%put('the last converged state (time '//number(run%eq%time_n)//') is on disk')
       code = exit_failed
-      if (run%eq%time_n > before) then
+      if (advanced) then
         call results%add_row(model, run%eq, run%step, report%iterations, report%cutbacks)
       else
         run%step = run%step - 1
       end if
-      call leave_last_state(model, run, results, clock, run%step - merge(1, 0, run%eq%time_n > before))
+      call leave_last_state(model, run, results, clock, run%step - merge(1, 0, advanced))
       return
     end if
     call clock%start(phase_output)
     call results%add_row(model, run%eq, run%step, report%iterations, report%cutbacks)
     if (results%wants_fields(model, run%step, run%eq%time_n)) call results%write_fields(model, run%eq, run%step)
     if (model%outputs%restart_every > 0) then
-      if (mod(run%step, model%outputs%restart_every) == 0) call results%write_state(run%eq, run%control, run%step)
+      if (mod(run%step, model%outputs%restart_every) == 0) call results%write_state(run%eq, run%control, run%path, run%step)
     end if
     call clock%stop(phase_output)
     if (interrupted() /= 0) then
@@ -279,7 +322,7 @@ contains
 
     call clock%start(phase_output)
     if (model%outputs%fields .and. results%last_field_step /= run%step) call results%write_fields(model, run%eq, run%step)
-    if (model%outputs%restart_every > 0) call results%write_state(run%eq, run%control, whole_steps)
+    if (model%outputs%restart_every > 0) call results%write_state(run%eq, run%control, run%path, whole_steps)
     call clock%stop(phase_output)
   end subroutine leave_last_state
 
@@ -293,6 +336,14 @@ contains
 
     write (line, '(a,i6,a,es13.6,a,i4,a,i3,a,i6,a,es9.2)') 'step', run%step, '  time', run%eq%time_n, '  iterations', &
       report%iterations, '  cut-backs', report%cutbacks, '  active', run%eq%active, '  residual', report%last%residual
+    if (run%path%asked /= path_off) then
+      select case (run%path%mode_done)
+      case (by_time);        line = trim(line)//'  by time'
+      case (by_dissipation); line = trim(line)//'  by dissipation'
+      case default;          line = trim(line)//'  by arc length'
+      end select
+      if (run%path%passed_limit) line = trim(line)//', limit point passed'
+    end if
     call log%put(trim(line))
     seconds = clock%elapsed()
     remaining = seconds*real(run%steps_in_all - run%step, wp)/max(1, run%step - run%resumed_step)

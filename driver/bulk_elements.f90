@@ -8,7 +8,7 @@ module bulk_elements
   use user_element, only: element_geometry, element_state, element_energy, task_prepare, task_tangent
   implicit none (type, external)
   private
-  public :: bulk_type, prepare_bulk, assemble_bulk, commit_bulk, roll_back_bulk, bind_geometry, add_prescribed_force
+  public :: bulk_type, prepare_bulk, assemble_bulk, commit_bulk, roll_back_bulk, bind_geometry, add_moved_force
 
   type :: bulk_type
     integer(i8), allocatable :: table_ptr(:)        !! (ne+1) where an element's table begins
@@ -119,9 +119,10 @@ contains
     end do
   end subroutine prepare_bulk
 
-  subroutine assemble_bulk(model, bulk, task, u, un, du, moves, time, dt, system, f, stored, dissipated, status, element)
-    !! Add every element's force to f and, in task_tangent, its tangent to the matrix. In elements of which a node
-    !! `moves` with a prescribed increment du, the force is that after the increment, to first order: ke du is added.
+  subroutine assemble_bulk(model, bulk, task, u, un, du, moves, time, dt, system, f, f_moved, stored, dissipated, &
+                           status, element)
+    !! Add every element's force to f and, in task_tangent, its tangent to the matrix. Elements of which a node `moves`
+    !! with a prescribed increment or rate du add ke du to f_moved.
     type(model_type), intent(inout), target :: model
     type(bulk_type), intent(inout), target :: bulk
     integer, intent(in) :: task                     !! task_residual or task_tangent
@@ -131,6 +132,7 @@ contains
     real(wp), intent(in) :: time, dt
     type(equation_system_type), intent(inout) :: system
     real(wp), intent(inout) :: f(:, :)              !! nodal forces (ndf,nn)
+    real(wp), intent(inout) :: f_moved(:, :)        !! their first-order change by du (ndf,nn)
     real(wp), intent(inout) :: stored, dissipated   !! energies
     integer, intent(out) :: status, element         !! the first failure and its element
     real(wp), target :: xe(model%ndm, bulk%nen_max), ue(model%ndf*bulk%nen_max), une(model%ndf*bulk%nen_max)
@@ -180,7 +182,7 @@ contains
         dissipated = dissipated + energy%dissipated
         if (task == task_tangent) then
           if (size(moves) > 0) then
-            if (any(moves(nodes))) call add_prescribed_force(ke, du(1:ndf, nodes), el%symmetric, fe)
+            if (any(moves(nodes))) call add_moved_force(ke, du, nodes, el%symmetric, f_moved)
           end if
           call system%add_element(e, nodes, ke, el%symmetric)
         end if
@@ -191,25 +193,27 @@ contains
     end do
   end subroutine assemble_bulk
 
-  pure subroutine add_prescribed_force(ke, du, symmetric, fe)
-    !! fe := fe + ke du, with ke as its element fills it.
+  pure subroutine add_moved_force(ke, du, nodes, symmetric, f_moved)
+    !! Add ke du to nodal forces, with ke as its element fills it.
     real(wp), contiguous, intent(in) :: ke(:, :, :, :)  !! (ndf,nen,ndf,nen)
-    real(wp), intent(in) :: du(:, :)                    !! (ndf,nen)
+    real(wp), intent(in) :: du(:, :)                    !! (>=ndf,nn)
+    integer, intent(in) :: nodes(:)                     !! of the element (nen)
     logical, intent(in) :: symmetric                    !! only blocks a >= b are filled
-    real(wp), contiguous, intent(inout) :: fe(:, :)     !! (ndf,nen)
+    real(wp), intent(inout) :: f_moved(:, :)            !! (>=ndf,nn)
     integer :: a, b, i, k
 
-    do b = 1, size(fe, 2)
-      do a = merge(b, 1, symmetric), size(fe, 2)
-        do k = 1, size(fe, 1)
-          do i = 1, size(fe, 1)
-            fe(i, a) = fe(i, a) + ke(i, a, k, b)*du(k, b)
-            if (symmetric .and. a > b) fe(k, b) = fe(k, b) + ke(i, a, k, b)*du(i, a)
+    do b = 1, size(nodes)
+      do a = merge(b, 1, symmetric), size(nodes)
+        do k = 1, size(ke, 3)
+          do i = 1, size(ke, 1)
+            f_moved(i, nodes(a)) = f_moved(i, nodes(a)) + ke(i, a, k, b)*du(k, nodes(b))
+            if (symmetric .and. a > b) &
+              f_moved(k, nodes(b)) = f_moved(k, nodes(b)) + ke(i, a, k, b)*du(i, nodes(a))
           end do
         end do
       end do
     end do
-  end subroutine add_prescribed_force
+  end subroutine add_moved_force
 
   subroutine commit_bulk(bulk)
     !! The step converged: its history is the new committed one.

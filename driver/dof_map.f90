@@ -5,7 +5,7 @@ module dof_map
   use model_data, only: model_type, time_function
   implicit none (type, external)
   private
-  public :: dof_map_type, build_dof_map, prescribed_factor, is_prescribed, is_linked
+  public :: dof_map_type, build_dof_map, prescribed_factor, prescribed_rate, is_prescribed, is_linked
 
   integer, parameter :: is_prescribed = 0  !! value of `eq` for a prescribed dof; a linked dof k has eq = -k
   type :: linked_dof
@@ -26,6 +26,9 @@ module dof_map
     procedure :: expand
     procedure :: reduce
     procedure :: add_increment
+    procedure :: follow
+    procedure :: rates
+    procedure :: spread_increment
   end type dof_map_type
 
 contains
@@ -88,6 +91,20 @@ contains
       if (number == 0 .or. props(i)%number == number) factor = factor + props(i)%at(time)
     end do
   end function prescribed_factor
+
+  pure function prescribed_rate(props, number, time) result(rate)
+    !! d/dtime of `prescribed_factor`.
+    type(time_function), intent(in) :: props(:)
+    integer, intent(in) :: number
+    real(wp), intent(in) :: time
+    real(wp) :: rate
+    integer :: i
+
+    rate = 0
+    do i = 1, size(props)
+      if (number == 0 .or. props(i)%number == number) rate = rate + props(i)%slope(time)
+    end do
+  end function prescribed_rate
 
   subroutine expand(self, model, time, u)
     !! Set the prescribed and the linked values of u at a time.
@@ -161,4 +178,44 @@ contains
       end associate
     end do
   end subroutine add_increment
+
+  subroutine follow(self, model, u)
+    !! Recompute dependent values from those that they depend on.
+    class(dof_map_type), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    real(wp), intent(inout) :: u(:, :)
+    if (size(u) < 0 .or. model%nn < 0 .or. self%nn < 0) return
+  end subroutine follow
+
+  subroutine rates(self, model, time, du)
+    !! du/dtime of prescribed values and, to first order, of what depends on them.
+    class(dof_map_type), intent(in) :: self
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: time
+    real(wp), intent(out) :: du(:, :)
+    integer :: a, i, l, m
+
+    du = 0
+    do a = 1, self%nn
+      do i = 1, self%ndf
+        if (self%eq(i, a) == is_prescribed .and. abs(model%disp(i, a)) > 0) &
+          du(i, a) = model%disp(i, a)*prescribed_rate(model%props, model%disp_prop(i, a), time)
+      end do
+    end do
+    do l = 1, size(self%links)
+      associate (d => self%links(l))
+        do m = 1, size(d%nodes)
+          du(d%comp, d%node) = du(d%comp, d%node) + d%coefs(m)*du(d%comps(m), d%nodes(m))
+        end do
+      end associate
+    end do
+  end subroutine rates
+
+  subroutine spread_increment(self, dq, du)
+    !! du := du + (du/dq) dq, to first order.
+    class(dof_map_type), intent(in) :: self
+    real(wp), intent(in) :: dq(:)
+    real(wp), intent(inout) :: du(:, :)
+    call self%add_increment(dq, du)
+  end subroutine spread_increment
 end module dof_map

@@ -17,7 +17,7 @@ module equilibrium
   implicit none (type, external)
   private
   public :: equilibrium_type, start_equilibrium, form_equilibrium, renew_pattern, commit, roll_back, place_text, &
-    energies_type
+    work_of_increment, energies_type
 
   type :: energies_type
     real(wp) :: elastic = 0, dissipated = 0, penalty = 0   !! [force*length]
@@ -33,6 +33,7 @@ module equilibrium
     type(interface_points_type), allocatable :: interfaces(:)
     real(wp), allocatable :: u(:, :), un(:, :)     !! control values now; committed (ndf,nn)
     real(wp), allocatable :: f(:, :)               !! internal - external force of every dof: the reactions
+    real(wp), allocatable :: f_moved(:, :)         !! its first-order change by prescribed increments or rates
     real(wp), allocatable :: fext(:, :)            !! external forces
     real(wp), allocatable :: f_n(:, :), fext_n(:, :) !! both at the last converged step, for the work
     real(wp), allocatable :: r(:)                  !! residual of the equations
@@ -82,7 +83,8 @@ contains
     end do
     call eq%system%start(model, symmetric)
     allocate (eq%u(model%ndf, model%nn), eq%un(model%ndf, model%nn), eq%f(model%ndf, model%nn), &
-      eq%fext(model%ndf, model%nn), eq%f_n(model%ndf, model%nn), eq%fext_n(model%ndf, model%nn), source=0.0_wp)
+      eq%f_moved(model%ndf, model%nn), eq%fext(model%ndf, model%nn), eq%f_n(model%ndf, model%nn), &
+      eq%fext_n(model%ndf, model%nn), source=0.0_wp)
     allocate (eq%r(eq%system%map%neq), source=0.0_wp)
     call eq%system%map%expand(model, 0.0_wp, eq%u)
     eq%un = eq%u
@@ -119,8 +121,8 @@ contains
   end subroutine renew_pattern
 
   subroutine form_equilibrium(model, eq, want_tangent, du, moves, clock, status)
-    !! Residual (eq%f, eq%r) and, if wanted, tangent at eq%u and eq%time. Where `moves`, prescribed increments du are
-    !! added to first order.
+    !! Residual (eq%f, eq%r) and, if wanted, tangent at eq%u and eq%time. With the tangent, the first-order change of
+    !! forces by prescribed increments (or rates) du where `moves` goes to eq%f_moved.
     type(model_type), intent(inout), target :: model
     type(equilibrium_type), intent(inout), target :: eq
     logical, intent(in) :: want_tangent
@@ -139,6 +141,7 @@ contains
     dissipated = 0
     sums%gap = 0
     eq%f = 0
+    if (want_tangent) eq%f_moved = 0
     if (size(eq%interfaces) > 0) then
       call clock%start(phase_search)
       x = model%x + eq%u(1:model%ndm, :)
@@ -160,8 +163,8 @@ contains
 
     if (want_tangent) call eq%system%clear()
     call clock%start(phase_elements)
-    call assemble_bulk(model, eq%bulk, task, eq%u, eq%un, du, moves, eq%time, dt, eq%system, eq%f, stored, dissipated, &
-                       status, place)
+    call assemble_bulk(model, eq%bulk, task, eq%u, eq%un, du, moves, eq%time, dt, eq%system, eq%f, eq%f_moved, stored, &
+                       dissipated, status, place)
     call clock%stop(phase_elements)
     if (status /= ok) then
       eq%fault = place_text(model, place)//': '//status_text(status)
@@ -173,7 +176,7 @@ contains
       eq%active = 0
       do i = 1, size(eq%interfaces)
         call assemble_interface(model, i, eq%interfaces(i), task, eq%u, eq%un, du, moves, eq%time, dt, eq%system, eq%f, &
-                                sums, status, place)
+                                eq%f_moved, sums, status, place)
         if (status /= ok) then
           call clock%stop(phase_contact)
           eq%fault = 'an interface point of '//model%interfaces(i)%name//': '//status_text(status)
@@ -185,7 +188,8 @@ contains
     end if
 
     call clock%start(phase_loads)
-    call assemble_loads(model, eq%loads, eq%time, eq%u, du, moves, want_tangent, eq%system, eq%fext, eq%f, status)
+    call assemble_loads(model, eq%loads, eq%time, eq%u, du, moves, want_tangent, eq%system, eq%fext, eq%f, &
+                        eq%f_moved, status)
     call clock%stop(phase_loads)
     if (status /= ok) then
       eq%fault = 'a surface load: '//status_text(status)
@@ -203,18 +207,11 @@ contains
   end subroutine form_equilibrium
 
   subroutine commit(eq)
-    !! The step converged. The work of a step is that of the mean forces over the increment (trapezoidal rule).
+    !! The step converged.
     type(equilibrium_type), intent(inout) :: eq
-    integer :: i, a
+    integer :: i
 
-    eq%energies%work = eq%energies_n%work
-    do a = 1, size(eq%u, 2)
-      do i = 1, size(eq%u, 1)
-        eq%energies%work = eq%energies%work + 0.5_wp*(eq%fext(i, a) + eq%fext_n(i, a))*(eq%u(i, a) - eq%un(i, a))
-        if (eq%system%map%eq(i, a) == is_prescribed) &
-          eq%energies%work = eq%energies%work + 0.5_wp*(eq%f(i, a) + eq%f_n(i, a))*(eq%u(i, a) - eq%un(i, a))
-      end do
-    end do
+    eq%energies%work = eq%energies_n%work + work_of_increment(eq)
     eq%energies_n = eq%energies
     eq%f_n = eq%f
     eq%fext_n = eq%fext
@@ -225,6 +222,22 @@ contains
       call commit_interface(eq%interfaces(i))
     end do
   end subroutine commit
+
+  pure function work_of_increment(eq) result(work)
+    !! Work of loads and reactions since the committed state: mean forces over the increment (trapezoidal rule).
+    type(equilibrium_type), intent(in) :: eq
+    real(wp) :: work                 !! [force*length]
+    integer :: i, a
+
+    work = 0
+    do a = 1, size(eq%u, 2)
+      do i = 1, size(eq%u, 1)
+        work = work + 0.5_wp*(eq%fext(i, a) + eq%fext_n(i, a))*(eq%u(i, a) - eq%un(i, a))
+        if (eq%system%map%eq(i, a) == is_prescribed) &
+          work = work + 0.5_wp*(eq%f(i, a) + eq%f_n(i, a))*(eq%u(i, a) - eq%un(i, a))
+      end do
+    end do
+  end function work_of_increment
 
   subroutine roll_back(eq)
     !! The step is rejected.

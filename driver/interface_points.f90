@@ -8,12 +8,13 @@ module interface_points
   use facets, only: facet_surface, build_facets
   use contact_search, only: master_search, start_search, move_master, pair_point
   use equation_system, only: equation_system_type
-  use bulk_elements, only: add_prescribed_force
-  use user_element, only: element_geometry, element_state, element_energy, task_prepare, task_tangent
+  use bulk_elements, only: add_moved_force
+  use user_element, only: element_geometry, element_state, element_energy, task_prepare, task_tangent, &
+    task_dissipation_gradient
   implicit none (type, external)
   private
   public :: interface_points_type, prepare_interface, pair_interface, assemble_interface, commit_interface, &
-    roll_back_interface, pair_lists, pairs_covered, forget_search
+    add_dissipation_gradient, roll_back_interface, pair_lists, pairs_covered, forget_search
 
   integer, parameter :: margin = 2   !! facets around the present pair that the matrix pattern has room for
 
@@ -37,6 +38,13 @@ module interface_points
     logical, allocatable :: active(:)           !! (np) it carried traction
     integer, allocatable :: room_for(:)         !! (np) master facet around which the pattern was made
   end type interface_points_type
+
+  type :: pair_work
+    !! One pair: nodes of the slave, then of the master facet; the element's arguments.
+    integer, allocatable :: nodes(:)
+    real(wp), allocatable :: xe(:, :), we(:), wm(:), u(:), un(:), f(:), k(:)
+    real(wp), pointer, contiguous :: fe(:, :) => null(), ke(:, :, :, :) => null()   !! shaped for the pair
+  end type pair_work
 
 contains
 
@@ -164,9 +172,10 @@ contains
     end do
   end subroutine pair_interface
 
-  subroutine assemble_interface(model, number, points, task, u, un, du, moves, time, dt, system, f, energies, status, &
-                                place)
-    !! Add the forces of all paired points to f and, in task_tangent, their tangents to the system.
+  subroutine assemble_interface(model, number, points, task, u, un, du, moves, time, dt, system, f, f_moved, &
+                                energies, status, place)
+    !! Add the forces of all paired points to f and, in task_tangent, their tangents to the system. Pairs of which a node
+    !! `moves` with a prescribed increment or rate du add ke du to f_moved.
     type(model_type), intent(in), target :: model
     integer, intent(in) :: number                   !! index into model%interfaces
     type(interface_points_type), intent(inout), target :: points
@@ -175,75 +184,30 @@ contains
     logical, intent(in) :: moves(:)
     real(wp), intent(in) :: time, dt
     type(equation_system_type), intent(inout) :: system
-    real(wp), intent(inout) :: f(:, :)
+    real(wp), intent(inout) :: f(:, :)              !! nodal forces (ndf,nn)
+    real(wp), intent(inout) :: f_moved(:, :)        !! their first-order change by du (ndf,nn)
     type(element_energy), intent(inout) :: energies !! sums
     integer, intent(out) :: status, place           !! the first failure and its point
-    real(wp), target :: xe(model%ndm, points%nen_max), we(points%nen_max), wm(points%nen_max)
-    real(wp), target :: ue(model%ndf*points%nen_max), une(model%ndf*points%nen_max), fwork(model%ndf*points%nen_max)
-    real(wp), target :: kwork((model%ndf*points%nen_max)**2)
-    real(wp), pointer, contiguous :: fe(:, :), ke(:, :, :, :)
-    integer :: nodes(points%nen_max)
+    type(pair_work), target :: work
     type(element_geometry) :: geo
     type(element_state) :: state
     type(element_energy) :: energy
-    integer :: i, a, n, ns, nm, ndf, s, m, dp
+    integer :: i, a
 
     status = ok
     place = 0
-    dp = model%ndm - 1
-    state%time = time
-    state%dt = dt
-    geo%ndm = model%ndm
-    geo%dp = dp
-    geo%master%side = real(model%interfaces(number)%side, wp)
+    call start_work(model, number, points, time, dt, work, geo, state)
     associate (el => model%interfaces(number)%element)
-      ndf = el%ndf
       do i = 1, points%np
         points%gap(i) = 0
         points%traction(i) = 0
         points%active(i) = .false.
-        m = points%facet(i)
-        if (m == 0) then
+        if (points%facet(i) == 0) then
           if (points%nhist > 0) points%hist(:, i) = points%hist_n(:, i)
           cycle
         end if
-        s = points%facet_of(i)
-        ns = points%slave%set%nen(s)
-        nm = points%master%set%nen(m)
-        n = ns + nm
-        nodes(1:ns) = points%slave%set%connectivity(s)
-        nodes(ns + 1:n) = points%master%set%connectivity(m)
-        geo%nen = n
-        geo%nes = ns
-        geo%degree = points%slave%set%degree(:, s)
-        geo%ce => points%slave%set%operator(s)
-        state%ue(1:ndf, 1:n) => ue
-        state%un(1:ndf, 1:n) => une
-        do a = 1, n
-          xe(:, a) = model%x(:, nodes(a))
-          state%ue(:, a) = u(1:ndf, nodes(a))
-          state%un(:, a) = un(1:ndf, nodes(a))
-        end do
-        we(1:ns) = model%w(nodes(1:ns))
-        wm(1:nm) = model%w(nodes(ns + 1:n))
-        geo%xe => xe(:, 1:n)
-        geo%we => we(1:ns)
-        geo%table => points%table(:, i)
-        geo%master%nen = nm
-        geo%master%degree = points%master%set%degree(1:2, m)
-        geo%master%xi(1:dp) = points%xi(:, i)
-        geo%master%held(1:dp) = points%held(:, i)
-        geo%master%we => wm(1:nm)
-        geo%master%ce => points%master%set%operator(m)
-        state%hist => points%hist(:, i)
-        state%hist_n => points%hist_n(:, i)
-        fe(1:ndf, 1:n) => fwork
-        if (task == task_tangent) then
-          ke(1:ndf, 1:n, 1:ndf, 1:n) => kwork
-        else
-          ke(1:0, 1:0, 1:0, 1:0) => kwork
-        end if
-        call el%evaluate(task, geo, state, fe, ke, energy, status)
+        call gather_pair(model, points, i, u, un, el%ndf, task == task_tangent, work, geo, state)
+        call el%evaluate(task, geo, state, work%fe, work%ke, energy, status)
         if (status /= ok) then
           place = i
           return
@@ -256,18 +220,123 @@ contains
         points%active(i) = .true.
         energies%penalty = energies%penalty + energy%penalty
         energies%gap = min(energies%gap, energy%gap)
-        if (task == task_tangent) then
-          if (size(moves) > 0) then
-            if (any(moves(nodes(1:n)))) call add_prescribed_force(ke, du(1:ndf, nodes(1:n)), el%symmetric, fe)
+        associate (nodes => work%nodes(1:geo%nen))
+          if (task == task_tangent) then
+            if (size(moves) > 0) then
+              if (any(moves(nodes))) call add_moved_force(work%ke, du, nodes, el%symmetric, f_moved)
+            end if
+            call system%add_loose(nodes, work%ke, el%symmetric)
           end if
-          call system%add_loose(nodes(1:n), ke, el%symmetric)
-        end if
-        do a = 1, n
-          f(1:ndf, nodes(a)) = f(1:ndf, nodes(a)) + fe(:, a)
-        end do
+          do a = 1, geo%nen
+            f(1:el%ndf, nodes(a)) = f(1:el%ndf, nodes(a)) + work%fe(:, a)
+          end do
+        end associate
       end do
     end associate
   end subroutine assemble_interface
+
+  subroutine add_dissipation_gradient(model, number, points, u, un, time, dt, g)
+    !! Add the gradient of the interface's dissipated energy with respect to all control values, at the pairs of the
+    !! last search. History is left alone.
+    type(model_type), intent(in), target :: model
+    integer, intent(in) :: number                   !! index into model%interfaces
+    type(interface_points_type), intent(inout), target :: points
+    real(wp), intent(in) :: u(:, :), un(:, :)
+    real(wp), intent(in) :: time, dt
+    real(wp), intent(inout) :: g(:, :)              !! (ndf,nn) [force]
+    type(pair_work), target :: work
+    type(element_geometry) :: geo
+    type(element_state) :: state
+    type(element_energy) :: energy
+    integer :: i, a, status
+
+    if (points%nhist == 0) return
+    call start_work(model, number, points, time, dt, work, geo, state)
+    associate (el => model%interfaces(number)%element)
+      do i = 1, points%np
+        if (points%facet(i) == 0) cycle
+        call gather_pair(model, points, i, u, un, el%ndf, .false., work, geo, state)
+        call el%evaluate(task_dissipation_gradient, geo, state, work%fe, work%ke, energy, status)
+        if (status /= ok) cycle                     ! the residual at the same state has said so
+        do a = 1, geo%nen
+          g(1:el%ndf, work%nodes(a)) = g(1:el%ndf, work%nodes(a)) + work%fe(:, a)
+        end do
+      end do
+    end associate
+  end subroutine add_dissipation_gradient
+
+  subroutine start_work(model, number, points, time, dt, work, geo, state)
+    !! Memory for one pair at a time, and what all pairs of an interface share.
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: number
+    type(interface_points_type), intent(in) :: points
+    real(wp), intent(in) :: time, dt
+    type(pair_work), intent(out) :: work
+    type(element_geometry), intent(inout) :: geo
+    type(element_state), intent(inout) :: state
+
+    associate (n => points%nen_max)
+      allocate (work%nodes(n), work%xe(model%ndm, n), work%we(n), work%wm(n), work%u(model%ndf*n), work%un(model%ndf*n), &
+        work%f(model%ndf*n), work%k((model%ndf*n)**2))
+    end associate
+    geo%ndm = model%ndm
+    geo%dp = model%ndm - 1
+    geo%master%side = real(model%interfaces(number)%side, wp)
+    state%time = time
+    state%dt = dt
+  end subroutine start_work
+
+  subroutine gather_pair(model, points, i, u, un, ndf, want_tangent, work, geo, state)
+    !! Geometry and state of point i with its master facet.
+    type(model_type), intent(in), target :: model
+    type(interface_points_type), intent(inout), target :: points
+    integer, intent(in) :: i
+    real(wp), intent(in) :: u(:, :), un(:, :)
+    integer, intent(in) :: ndf
+    logical, intent(in) :: want_tangent
+    type(pair_work), intent(inout), target :: work
+    type(element_geometry), intent(inout) :: geo
+    type(element_state), intent(inout) :: state
+    integer :: a, n, ns, nm, s, m
+
+    s = points%facet_of(i)
+    m = points%facet(i)
+    ns = points%slave%set%nen(s)
+    nm = points%master%set%nen(m)
+    n = ns + nm
+    work%nodes(1:ns) = points%slave%set%connectivity(s)
+    work%nodes(ns + 1:n) = points%master%set%connectivity(m)
+    geo%nen = n
+    geo%nes = ns
+    geo%degree = points%slave%set%degree(:, s)
+    geo%ce => points%slave%set%operator(s)
+    state%ue(1:ndf, 1:n) => work%u
+    state%un(1:ndf, 1:n) => work%un
+    do a = 1, n
+      work%xe(:, a) = model%x(:, work%nodes(a))
+      state%ue(:, a) = u(1:ndf, work%nodes(a))
+      state%un(:, a) = un(1:ndf, work%nodes(a))
+    end do
+    work%we(1:ns) = model%w(work%nodes(1:ns))
+    work%wm(1:nm) = model%w(work%nodes(ns + 1:n))
+    geo%xe => work%xe(:, 1:n)
+    geo%we => work%we(1:ns)
+    geo%table => points%table(:, i)
+    geo%master%nen = nm
+    geo%master%degree = points%master%set%degree(1:2, m)
+    geo%master%xi(1:geo%dp) = points%xi(:, i)
+    geo%master%held(1:geo%dp) = points%held(:, i)
+    geo%master%we => work%wm(1:nm)
+    geo%master%ce => points%master%set%operator(m)
+    state%hist => points%hist(:, i)
+    state%hist_n => points%hist_n(:, i)
+    work%fe(1:ndf, 1:n) => work%f
+    if (want_tangent) then
+      work%ke(1:ndf, 1:n, 1:ndf, 1:n) => work%k
+    else
+      work%ke(1:0, 1:0, 1:0, 1:0) => work%k
+    end if
+  end subroutine gather_pair
 
   subroutine commit_interface(points)
     type(interface_points_type), intent(inout) :: points

@@ -4,17 +4,17 @@ module load_assembly
   use kinds, only: wp
   use status_codes, only: ok
   use model_data, only: model_type, surface_load_type
-  use dof_map, only: prescribed_factor
+  use dof_map, only: prescribed_factor, prescribed_rate
   use facets, only: facet_surface, build_facets
   use gauss_rules, only: tensor_rule
   use rational_basis, only: shape_functions
   use geometry_map, only: physical_gradient
   use surface_load, only: dead_traction, dead_pressure, follower_pressure, body_force
-  use bulk_elements, only: add_prescribed_force
+  use bulk_elements, only: add_moved_force
   use equation_system, only: equation_system_type
   implicit none (type, external)
   private
-  public :: load_points_type, prepare_loads, assemble_loads, loads_are_symmetric
+  public :: load_points_type, prepare_loads, assemble_loads, load_rates, loads_are_symmetric
 
   type :: dead_load
     real(wp), allocatable :: force(:, :)   !! load at factor 1 (ndf,nn) [force]
@@ -154,8 +154,8 @@ contains
     end do
   end subroutine facet_points
 
-  subroutine assemble_loads(model, loads, time, u, du, moves, want_tangent, system, fext, f, status)
-    !! fext := all loads at a time, f := f - fext.
+  subroutine assemble_loads(model, loads, time, u, du, moves, want_tangent, system, fext, f, f_moved, status)
+    !! fext := all loads at a time, f := f - fext; in task_tangent the follower loads' change by du goes to f_moved.
     type(model_type), intent(in) :: model
     type(load_points_type), intent(in), target :: loads
     real(wp), intent(in) :: time
@@ -164,7 +164,7 @@ contains
     logical, intent(in) :: want_tangent
     type(equation_system_type), intent(inout) :: system
     real(wp), intent(out) :: fext(:, :)
-    real(wp), intent(inout) :: f(:, :)
+    real(wp), intent(inout) :: f(:, :), f_moved(:, :)
     integer, intent(out) :: status
     integer, pointer, contiguous :: nodes(:)
     real(wp), allocatable :: shp(:, :), dshp(:, :, :), wt(:), fe(:, :), ke(:, :, :, :)
@@ -196,7 +196,7 @@ contains
                                [(factor, g=1, size(wt))], fe, ke)
         if (want_tangent) then
           if (size(moves) > 0) then
-            if (any(moves(nodes))) call add_prescribed_force(ke, du(1:model%ndm, nodes), .false., fe)
+            if (any(moves(nodes))) call add_moved_force(ke, du, nodes, .false., f_moved)
           end if
           call system%add_loose(nodes, ke, .false.)
         end if
@@ -208,4 +208,44 @@ contains
       end do
     end do
   end subroutine assemble_loads
+
+  subroutine load_rates(model, loads, time, u, rate)
+    !! d fext / d time at standing control values u, for path following.
+    type(model_type), intent(in) :: model
+    type(load_points_type), intent(in), target :: loads
+    real(wp), intent(in) :: time
+    real(wp), intent(in) :: u(:, :)
+    real(wp), intent(out) :: rate(:, :)      !! (ndf,nn) [force/time]
+    integer, pointer, contiguous :: nodes(:)
+    real(wp), allocatable :: shp(:, :), dshp(:, :, :), wt(:), fe(:, :), ke(:, :, :, :)
+    real(wp) :: factor
+    integer :: a, i, l, k, g
+
+    rate = 0
+    if (allocated(model%force)) then
+      do a = 1, size(model%force, 2)
+        do i = 1, model%ndf
+          if (abs(model%force(i, a)) > 0) rate(i, a) = model%force(i, a) &
+            *prescribed_rate(model%props, model%force_prop(i, a), time)
+        end do
+      end do
+    end if
+    do l = 1, size(loads%dead)
+      factor = prescribed_rate(model%props, loads%dead(l)%prop, time)
+      rate(:, 1:model%nn) = rate(:, 1:model%nn) + factor*loads%dead(l)%force
+    end do
+    do l = 1, size(loads%follower)
+      factor = loads%follower(l)%pressure*prescribed_rate(model%props, loads%follower(l)%prop, time)
+      do k = 1, loads%follower(l)%surface%set%ne
+        nodes => loads%follower(l)%surface%set%connectivity(k)
+        call facet_points(model, loads%follower(l)%surface, k, loads%follower(l)%gp, shp, dshp, wt)
+        allocate (fe(model%ndm, size(nodes)), ke(model%ndm, size(nodes), model%ndm, size(nodes)))
+        call follower_pressure(model%x(:, nodes), u(1:model%ndm, nodes), shp, dshp, wt, [(factor, g=1, size(wt))], fe, ke)
+        do a = 1, size(nodes)
+          rate(1:model%ndm, nodes(a)) = rate(1:model%ndm, nodes(a)) - fe(:, a)
+        end do
+        deallocate (fe, ke)
+      end do
+    end do
+  end subroutine load_rates
 end module load_assembly

@@ -35,6 +35,7 @@ module model_data
     real(wp), allocatable :: t(:), v(:)
   contains
     procedure :: at => time_function_at
+    procedure :: slope => time_function_slope
   end type time_function
 
   type :: surface_load_type
@@ -137,4 +138,21 @@ contains
     end do
     value = self%v(n)
   end function time_function_at
+
+  pure function time_function_slope(self, time) result(slope)
+    !! Its rate; at a corner that of the piece that begins there.
+    class(time_function), intent(in) :: self
+    real(wp), intent(in) :: time
+    real(wp) :: slope
+    integer :: i
+
+    slope = 0
+    if (time < self%t(1)) return
+    do i = 2, size(self%t)
+      if (time < self%t(i)) then
+        slope = (self%v(i) - self%v(i - 1))/(self%t(i) - self%t(i - 1))
+        return
+      end if
+    end do
+  end function time_function_slope
 end module model_data

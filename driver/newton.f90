@@ -16,6 +16,7 @@ module newton
   implicit none (type, external)
   private
   public :: newton_settings, newton_record, newton_report, solve_increment
+  public :: measure, ratio, note_active, changed_points, append
 
   type :: newton_settings
     real(wp) :: energy_tolerance = 1.0e-12_wp    !! of the correction, relative to the increment's work: when to look
@@ -101,6 +102,10 @@ contains
       end if
       call form_equilibrium(model, eq, .true., du, moves, clock, status)
       if (status /= ok) exit
+      if (size(moves) > 0) then   ! prescribed increments that u does not hold yet, to first order
+        eq%f = eq%f + eq%f_moved
+        call eq%system%map%reduce(eq%f, eq%r)
+      end if
       call measure(eq, reference, size_r)
       report%residual = ratio(size_r, reference)
       if (.not. ieee_is_finite(size_r)) then

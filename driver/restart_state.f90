@@ -8,18 +8,20 @@ module restart_state
   use equilibrium, only: equilibrium_type
   use interface_points, only: forget_search
   use step_control, only: step_control_type
+  use path_control, only: path_control_type
   implicit none (type, external)
   private
   public :: write_restart, read_restart
 
 contains
 
-  subroutine write_restart(path, identity, step, eq, control, message)
+  subroutine write_restart(path, identity, step, eq, control, following, message)
     character(*), intent(in) :: path
     character(*), intent(in) :: identity                   !! deck text and parameters: a restart needs the same
     integer, intent(in) :: step
     type(equilibrium_type), intent(inout) :: eq            !! its pattern and search are renewed afterwards
     type(step_control_type), intent(in) :: control
+    type(path_control_type), intent(in) :: following       !! of the equilibrium path
     character(:), allocatable, intent(out) :: message      !! what failed, unallocated when all is well
     type(hdf5_store_type) :: store
     character(:), allocatable :: group
@@ -36,6 +38,7 @@ contains
     call store%write('/fext', eq%fext_n)
     call store%write('/rate', control%rate)
     call store%write('/history', eq%bulk%hist_n)
+    call write_path(store, following)
     do i = 1, size(eq%interfaces)
       group = '/interface'//integer_text(i)
       call store%make_group(group)
@@ -50,13 +53,14 @@ contains
     if (store%failed) message = store%message
   end subroutine write_restart
 
-  subroutine read_restart(path, identity, step, eq, control, message)
+  subroutine read_restart(path, identity, step, eq, control, following, message)
     !! Into a started equilibrium and control.
     character(*), intent(in) :: path
     character(*), intent(in) :: identity
     integer, intent(out) :: step
     type(equilibrium_type), intent(inout) :: eq
     type(step_control_type), intent(inout) :: control
+    type(path_control_type), intent(inout) :: following
     character(:), allocatable, intent(out) :: message
     type(hdf5_store_type) :: store
     character(:), allocatable :: group, stored
@@ -114,6 +118,7 @@ contains
       eq%bulk%hist_n = history
       eq%bulk%hist = history
     end if
+    call read_path(store, following)
     do i = 1, size(eq%interfaces)
       group = '/interface'//integer_text(i)
       call store%read(group//'/facet', facet)
@@ -137,4 +142,52 @@ contains
     call store%close()
     eq%pattern_stands = .false.
   end subroutine read_restart
+
+  subroutine write_path(store, following)
+    type(hdf5_store_type), intent(inout) :: store
+    type(path_control_type), intent(in) :: following
+
+    call store%write('/path_numbers', [following%asked, following%mode, following%mode_done, &
+      following%wanted_iterations, merge(1, 0, following%has_sign), following%sign, following%negative, &
+      following%limit_points, merge(1, 0, following%unstable), following%first_sign, following%first_negative])
+    call store%write('/path_sizes', [following%began, following%until, following%most_time, following%most_length, &
+      following%time_step, following%arc, following%dissipation, following%along_time])
+    if (allocated(following%along)) then
+      call store%write('/path_along', following%along)
+    else
+      call store%write('/path_along', reshape([real(wp) ::], [0, 0]))
+    end if
+  end subroutine write_path
+
+  subroutine read_path(store, following)
+    type(hdf5_store_type), intent(inout) :: store
+    type(path_control_type), intent(inout) :: following
+    integer, allocatable :: n(:)
+    real(wp), allocatable :: x(:), along(:, :)
+
+    call store%read('/path_numbers', n)
+    call store%read('/path_sizes', x)
+    call store%read('/path_along', along)
+    if (store%failed) return
+    if (size(along) > 0) following%along = along
+    following%asked = n(1)
+    following%mode = n(2)
+    following%mode_done = n(3)
+    following%wanted_iterations = n(4)
+    following%has_sign = n(5) == 1
+    following%sign = n(6)
+    following%negative = n(7)
+    following%limit_points = n(8)
+    following%unstable = n(9) == 1
+    following%first_sign = n(10)
+    following%first_negative = n(11)
+    following%began = x(1)
+    following%until = x(2)
+    following%most_time = x(3)
+    following%most_length = x(4)
+    following%time_step = x(5)
+    following%arc = x(6)
+    following%dissipation = x(7)
+    following%along_time = x(8)
+  end subroutine read_path
 end module restart_state

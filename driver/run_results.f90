@@ -5,6 +5,7 @@ module run_results
   use model_sets, only: nodes_of_set
   use equilibrium, only: equilibrium_type
   use step_control, only: step_control_type
+  use path_control, only: path_control_type
   use history_writer, only: history_writer_type
   use field_output, only: field_output_type
   use element_fields, only: evaluate_element_fields
@@ -24,6 +25,7 @@ module run_results
     character(:), allocatable :: identity          !! deck text and parameters
     character(:), allocatable :: fault             !! what could not be written, unallocated when all is well
     integer :: last_field_step = -1
+    logical :: time_is_step = .false.              !! fields are stamped with the step: load time may go back
     logical, private :: fields_begun = .false.
     type(named_text_type), allocatable, private :: provenance(:)
   contains
@@ -167,7 +169,8 @@ contains
     end if
     call evaluate_element_fields(model, self%fields%cells, eq%un, eq%un, eq%time_n, 0.0_wp, eq%bulk, fields, failures)
     call interface_fields(model, eq, points, point_fields)
-    call self%fields%write(self%folder, model%mesh, model%w, step, eq%time_n, eq%un, fields, points, point_fields)
+    call self%fields%write(self%folder, model%mesh, model%w, step, &
+      merge(real(step, wp), eq%time_n, self%time_is_step), eq%un, fields, points, point_fields)
     if (self%fields%failed) call self%note(self%fields%message)
     self%last_field_step = step
   end subroutine write_fields
@@ -212,16 +215,17 @@ contains
     end do
   end subroutine interface_fields
 
-  subroutine write_state(self, eq, control, step)
+  subroutine write_state(self, eq, control, path, step)
     !! The restart state.
     class(run_results_type), intent(inout) :: self
     type(equilibrium_type), intent(inout) :: eq
     type(step_control_type), intent(in) :: control
+    type(path_control_type), intent(in) :: path
     integer, intent(in) :: step
     character(:), allocatable :: message
 
     if (allocated(self%fault)) return
-    call write_restart(self%folder%file('restart.h5'), self%identity, step, eq, control, message)
+    call write_restart(self%folder%file('restart.h5'), self%identity, step, eq, control, path, message)
     if (allocated(message)) call self%note(message)
   end subroutine write_state
 

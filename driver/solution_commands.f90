@@ -5,21 +5,22 @@ module solution_commands
   use messages, only: message_log, deck_place
   use deck_record, only: record
   use deck_reader, only: deck
+  use path_control, only: path_off, path_auto, by_dissipation, by_arc
   use linear_solver, only: backend_auto, backend_cholmod, backend_umfpack, order_auto, order_amd, order_metis
   implicit none (type, external)
   private
   public :: solution_command, solution_program, read_solution
   public :: do_dt, do_time, do_loop, do_next, do_solve, do_tolerance, do_print, do_line_search, do_cutback, &
-    do_backend, do_predictor
+    do_backend, do_predictor, do_path
 
   integer, parameter :: do_dt = 1, do_time = 2, do_loop = 3, do_next = 4, do_solve = 5, do_tolerance = 6, &
-    do_print = 7, do_line_search = 8, do_cutback = 9, do_backend = 10, do_predictor = 11
+    do_print = 7, do_line_search = 8, do_cutback = 9, do_backend = 10, do_predictor = 11, do_path = 12
 
   type :: solution_command
     integer :: what = 0
     integer :: count = 0            !! LOOP: repetitions; others: switches
-    integer :: other = 0            !! LOOP: its NEXT; NEXT: its LOOP; SOLVer: ordering
-    real(wp) :: value(2) = 0        !! DT: increment; TOL: energy, residual
+    integer :: other = 0            !! LOOP: its NEXT; NEXT: its LOOP; SOLVer: ordering; PATH: wanted iterations
+    real(wp) :: value(3) = 0        !! DT: increment; TOL: energy, residual; PATH: first length, largest, last time
     type(deck_place) :: at
   end type solution_command
 
@@ -27,8 +28,8 @@ module solution_commands
     type(solution_command), allocatable :: commands(:)
   end type solution_program
 
-  character(10), parameter :: known(13) = [character(10) :: 'TOL', 'DT', 'TIME', 'LOOP', 'NEXT', 'TANG', 'UTAN', &
-    'SOLVer', 'PRINt', 'LINEsearch', 'CUTBack', 'PREDictor', 'END']
+  character(10), parameter :: known(14) = [character(10) :: 'TOL', 'DT', 'TIME', 'LOOP', 'NEXT', 'TANG', 'UTAN', &
+    'SOLVer', 'PRINt', 'LINEsearch', 'CUTBack', 'PREDictor', 'PATH', 'END']
 
 contains
 
@@ -117,6 +118,9 @@ contains
         case default
           call rec%add_error(log, 'unknown predictor "'//rec%word(2)//'"', 'Known predictors: TANGent, CONTinue', 2)
         end select
+      case ('path')
+        command%what = do_path
+        call read_path(rec, command, log)
       case default
         rec%ends_set = .true.  ! a solution command is one line: nothing is skipped
         call input%refuse_command(rec, known, log)
@@ -133,6 +137,35 @@ contains
     if (.not. begun .and. log%error_count() == 0) call rec%add_error(log, 'the deck has no solution commands', &
       'Add BATCh, DT,,1, TIME, TANG,,1, END after the mesh')
   end subroutine read_solution
+
+  subroutine read_path(rec, command, log)
+    !! PATH AUTO|DISSipation|ARClength|OFF [LENGth=s] [MOST=s] [ITERations=n] [UNTIl=t]
+    type(record), intent(inout) :: rec
+    type(solution_command), intent(inout) :: command
+    type(message_log), intent(inout) :: log
+
+    select case (rec%key(2))
+    case ('auto', ''); command%count = path_auto
+    case ('diss'); command%count = by_dissipation
+    case ('arcl', 'arc'); command%count = by_arc
+    case ('off'); command%count = path_off
+    case default
+      call rec%add_error(log, 'unknown control of the path "'//rec%word(2)//'"', &
+        'Known: AUTO, DISSipation, ARClength, OFF', 2)
+    end select
+    command%other = 6
+    command%value = [0.0_wp, huge(1.0_wp), huge(1.0_wp)]
+    call rec%number_option('length', command%value(1), log)
+    call rec%number_option('most', command%value(2), log)
+    call rec%number_option('until', command%value(3), log)
+    call rec%integer_option('iterations', command%other, log)
+    call rec%check_options([character(10) :: 'length', 'most', 'iterations', 'until'], log)
+    if (rec%has('length') .and. .not. command%value(1) > 0) call rec%add_error(log, 'the length must be positive', &
+      'It is the first arc [length] or the first dissipated energy; leave it out to begin with DT', rec%find('length'))
+    if (.not. command%value(2) > 0) call rec%add_error(log, 'the largest length must be positive', '', rec%find('most'))
+    if (command%other < 1) call rec%add_error(log, 'at least one iteration is wanted', 'Write ITERations=6', &
+      rec%find('iterations'))
+  end subroutine read_path
 
   subroutine read_backend(rec, command, log)
     type(record), intent(inout) :: rec

@@ -9,7 +9,7 @@ module step_control
   use timers, only: timer_set
   implicit none (type, external)
   private
-  public :: step_control_type, step_report, start_control, advance
+  public :: step_control_type, step_report, start_control, advance, note_rate
 
   integer, parameter :: easy = 8   !! an increment of so many iterations or fewer lets the next one grow
 
@@ -48,7 +48,7 @@ contains
     type(timer_set), intent(inout) :: clock
     type(step_report), intent(out) :: report
     integer, intent(out) :: status
-    real(wp) :: span, dt, t_new, began
+    real(wp) :: span, dt, t_new
     logical :: continued
 
     span = target_time - eq%time_n
@@ -66,10 +66,7 @@ contains
         report%iterations = report%iterations + report%last%iterations
       end if
       if (status == ok) then
-        began = eq%time_n
-        control%rate = (eq%u - eq%un)/(t_new - began)
-        control%has_rate = .true.
-        control%time_before = began
+        call note_rate(control, eq)
         call commit(eq)
         report%increments = report%increments + 1
         if (report%last%iterations <= easy) control%level = max(control%level - 1, 0)
@@ -81,6 +78,17 @@ contains
       end if
     end do
   end subroutine advance
+
+  subroutine note_rate(control, eq)
+    !! The rate of an increment that is about to be committed.
+    type(step_control_type), intent(inout) :: control
+    type(equilibrium_type), intent(in) :: eq
+
+    control%has_rate = abs(eq%time - eq%time_n) > 0
+    if (.not. control%has_rate) return
+    control%rate = (eq%u - eq%un)/(eq%time - eq%time_n)
+    control%time_before = eq%time_n
+  end subroutine note_rate
 
   pure function rates_go_on(model, control, time, t_new) result(yes)
     !! Whether every time function goes on at the rate of the last increment.

@@ -5,7 +5,7 @@ module gpts_element
   use kinds, only: wp
   use status_codes, only: ok
   use user_element, only: element_type, element_geometry, element_state, element_energy, property_record, &
-    task_prepare, task_tangent
+    task_prepare, task_tangent, task_dissipation_gradient
   use rational_basis, only: shape_functions
   use surface_frame, only: tangent_frame_at
   use interface_law, only: gap_law, gap_response, contact_law
@@ -117,7 +117,11 @@ contains
       end if
     end associate
     if (status /= ok) return
-    if (size(state%hist) > 0) state%hist(1) = response%opening
+    if (task == task_dissipation_gradient) then
+      call turn_to_dissipation(response, geo%table(1), fe)
+    else if (size(state%hist) > 0) then
+      state%hist(1) = response%opening
+    end if
     energy%gap = response%gap
     energy%traction = response%traction
     energy%penalty = response%penalty_energy
@@ -125,6 +129,19 @@ contains
     energy%dissipated = response%dissipated
     energy%active = abs(response%traction) > 0 .or. abs(response%slope) > 0
   end subroutine evaluate
+
+  pure subroutine turn_to_dissipation(response, wt, fe)
+    !! From fe = p N w_g j_g to dD/dg N w_g j_g. p vanishes only where dD/dg does.
+    type(gap_response), intent(in) :: response           !! its slope of D includes w_g j_g
+    real(wp), intent(in) :: wt                           !! w_g j_g [area]
+    real(wp), contiguous, intent(inout) :: fe(:, :)
+
+    if (response%dissipation_slope > 0) then
+      fe = (response%dissipation_slope/(wt*response%traction))*fe
+    else
+      fe = 0
+    end if
+  end subroutine turn_to_dissipation
 
   pure subroutine prepare_point(ndm, dp, geo, status)
     !! Slave functions at the Gauss point and w_g j_g, measured in the reference configuration.

@@ -11,11 +11,13 @@ module user_element
   implicit none (type, external)
   private
   public :: element_type, element_geometry, element_state, element_energy, master_facet, property_record
-  public :: task_prepare, task_residual, task_tangent, mirror
+  public :: task_prepare, task_residual, task_tangent, task_dissipation_gradient, mirror
 
   integer, parameter :: task_prepare = 1   !! fill geo%table with what does not change while the mesh stands
   integer, parameter :: task_residual = 2  !! fe and energies
   integer, parameter :: task_tangent = 3   !! fe, energies and ke
+  integer, parameter :: task_dissipation_gradient = 4  !! of an interface element alone: fe(i,a) becomes
+                                                       !! d (dissipated energy) / d ue(i,a); `hist` is left alone
 
   type :: property_record
     !! One line of a MATErial data set: `ELAStic NEOHook 1.0 0.3` has words ELAS, NEOH and values 1.0, 0.3.

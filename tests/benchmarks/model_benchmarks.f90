@@ -5,6 +5,7 @@ module model_benchmarks
   use deck_files, only: write_lines, remove_file
   use deck_runs, only: deck_run
   use equilibrium, only: form_equilibrium
+  use path_control, only: path_control_type
   use bulk_elements, only: prepare_bulk, assemble_bulk
   use interface_points, only: pair_interface, assemble_interface, pair_lists
   use user_element, only: element_energy, task_residual, task_tangent
@@ -116,7 +117,7 @@ contains
           eq%f = 0
           if (pass == 2) call eq%system%clear()
           call assemble_bulk(run%model, eq%bulk, tasks(pass), eq%u, eq%un, none, [logical ::], eq%time, 1.0_wp, eq%system, &
-                             eq%f, stored, dissipated, status, place)
+                             eq%f, eq%f_moved, stored, dissipated, status, place)
         end do
         call put(group, row, trim(what(pass))//', assembled, '//trim(merge('NURBS   ', 'Lagrange', basis == 'N'))//' [us]', &
                  1.0e6_wp*watch%best/run%model%mesh%ne)
@@ -208,7 +209,7 @@ contains
       call watch%begin()
       do while (watch%goes_on())
         call assemble_interface(run%model, 1, eq%interfaces(1), task_tangent, eq%u, eq%un, none, [logical ::], eq%time, &
-                                1.0_wp, eq%system, eq%f, sums, status, place)
+                                1.0_wp, eq%system, eq%f, eq%f_moved, sums, status, place)
       end do
       call put('system', row, 'interface points [ms]', 1.0e3_wp*watch%best)
     end associate
@@ -221,6 +222,7 @@ contains
     type(run_results_type) :: results
     type(named_text_type) :: provenance(1)
     type(stopwatch_type) :: watch
+    type(path_control_type) :: following
     integer :: step
 
     provenance(1) = named_text_type('deck', 'benchmark')
@@ -236,7 +238,7 @@ contains
     call put('system', row, 'output of a step, an element [us]', 1.0e6_wp*watch%best/run%model%mesh%ne)
     call watch%begin()
     do while (watch%goes_on())
-      call results%write_state(run%eq, run%control, step)
+      call results%write_state(run%eq, run%control, following, step)
     end do
     call put('system', row, 'restart state [ms]', 1.0e3_wp*watch%best)
     if (allocated(results%fault)) error stop 'model_benchmarks: '//results%fault
