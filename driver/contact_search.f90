@@ -4,8 +4,11 @@ module contact_search
   !! Local: from the last facet and xi; a projection that leaves a facet goes on to its neighbour. Global, for points
   !! without a facet: a tree of bounding boxes gives the facets nearby, nearest box first; the nearest valid
   !! projection wins. Where two facets meet in a kink there may be no valid projection: then the nearest point of the
-  !! kink is the pair, and `held` says in which directions xi rests there. Beyond the master's edge a point is
-  !! unpaired.
+  !! kink is the pair, and `held` says in which directions xi rests there.
+  !!
+  !! Beyond the master's edge a point is unpaired, unless it is bonded: then it is projected on the smooth extension of
+  !! its facet, by one more facet's length in xi, so that gap, traction and energy go on without a jump; neither is it
+  !! lost beyond the search distance. Where the extension ends too it is unpaired, which the caller has to refuse.
   !!
   !! The cone of a kink in which this holds is narrow, (gap) x (angle), and stiff: Newton would leap over it to and fro.
   !! So a penetrating point goes from one facet to the next only by way of the kink: when it has crossed one it is
@@ -16,6 +19,7 @@ module contact_search
   use rational_basis, only: shape_functions
   use surface_frame, only: tangent_frame_at
   use box_tree, only: box_tree_type
+  use bezier_extension, only: extend_bezier
   use closest_point, only: projection_report, homogeneous_points, closest_point_of_bezier, find_closest_point_global
   implicit none (type, external)
   private
@@ -23,6 +27,7 @@ module contact_search
 
   real(wp), parameter :: near_side = 0.05_wp  !! so near to a side, in xi, the neighbour may be nearer
   integer, parameter :: most_hops = 64        !! facets a point may cross in one iteration before the tree is asked
+  real(wp), parameter :: extension = 1.0_wp   !! of a facet beyond the master's edge, in xi
   integer, parameter :: most_candidates = 16  !! facets that a global search looks at
 
   type :: master_search
@@ -113,12 +118,13 @@ contains
     search%boxes_moved = search%moved
   end subroutine form_boxes
 
-  subroutine pair_point(search, surface, w, xs, facet, xi, held, forced)
+  subroutine pair_point(search, surface, w, xs, bonded, facet, xi, held, forced)
     !! Pair a slave point. On entry facet, xi and held are the last pairing (facet 0: none); on return the new one.
     type(master_search), intent(inout) :: search
     type(facet_surface), intent(in), target :: surface
     real(wp), intent(in) :: w(:)                 !! weights of all nodes
     real(wp), intent(in) :: xs(:)                !! slave point (ndm) [length]
+    logical, intent(in) :: bonded                !! it keeps its facet beyond the master's edge and the search distance
     integer, intent(inout) :: facet
     real(wp), intent(inout) :: xi(:)             !! (dp)
     logical, intent(inout) :: held(:)            !! xi rests on a kink in this direction (dp)
@@ -140,6 +146,7 @@ contains
         call form_facet(search, surface, w, f)
         call closest_point_of_bezier(surface%set%degree(1:search%dp, f), &
           search%q(:, search%q_ptr(f):search%q_ptr(f + 1) - 1), xs, trial, report, status)
+        if (status == outside_facet .and. bonded) call project_beyond_edge(search, surface, f, xs, trial, report, status)
         if (status == ok) then
           if (hop == 2 .and. .not. was_held) then
             if (crosses_kink(search, surface, w, xs, last, left_xi, f, trial)) then
@@ -152,7 +159,7 @@ contains
           end if
           facet = f
           xi = trial
-          if (report%distance > search%reach) then
+          if (report%distance > search%reach .and. .not. bonded) then
             facet = 0
           else if (any(xi < near_side .or. xi > 1 - near_side)) then
             call try_neighbours(search, surface, w, xs, report%distance, facet, xi)
@@ -170,7 +177,7 @@ contains
         if (f == 0) exit
         if (f == previous) then
           ! to and fro across a kink: neither facet holds the projection, the kink itself is nearest
-          if (report%distance <= search%reach) then
+          if (report%distance <= search%reach .or. bonded) then
             facet = last
             xi = trial
             held = report%sides(1:search%dp) /= 0
@@ -181,9 +188,45 @@ contains
         end if
         call carry_over(surface, last, f, side, trial)
       end do
+      facet = 0
+      if (bonded) return                         ! another facet would not be the one that it is bonded to
     end if
     call pair_globally(search, surface, w, xs, facet, xi, held)
   end subroutine pair_point
+
+  subroutine project_beyond_edge(search, surface, f, xs, xi, report, status)
+    !! Projection on the extension of a facet over those of its sides that are the master's edge.
+    type(master_search), intent(in) :: search
+    type(facet_surface), intent(in) :: surface
+    integer, intent(in) :: f
+    real(wp), intent(in) :: xs(:)
+    real(wp), intent(inout) :: xi(:)             !! nearest point of the facet; projection
+    type(projection_report), intent(inout) :: report
+    integer, intent(inout) :: status
+    real(wp) :: q(search%ndm + 1, search%q_ptr(f):search%q_ptr(f + 1) - 1), low(size(xi)), high(size(xi))
+    integer :: a
+
+    low = 0
+    high = 1
+    do a = 1, search%dp
+      if (report%sides(a) == 0) cycle
+      if (surface%neighbour(report%sides(a), f) /= 0) cycle
+      if (mod(report%sides(a), 2) == 1) then
+        low(a) = -extension
+      else
+        high(a) = 1 + extension
+      end if
+    end do
+    if (all(low >= 0 .and. high <= 1)) return
+    q = search%q(:, search%q_ptr(f):search%q_ptr(f + 1) - 1)
+    do a = 1, search%dp
+      if (low(a) < 0) call extend_bezier(surface%set%degree(1:search%dp, f), a, low(a), q)
+      if (high(a) > 1) call extend_bezier(surface%set%degree(1:search%dp, f), a, high(a), q)
+    end do
+    xi = (xi - low)/(high - low)
+    call closest_point_of_bezier(surface%set%degree(1:search%dp, f), q, xs, xi, report, status)
+    xi = low + (high - low)*xi
+  end subroutine project_beyond_edge
 
   function crosses_kink(search, surface, w, xs, from, xi_from, to, xi_to) result(crosses)
     !! Whether a penetrating point has passed a kink between two facets: their normals differ at the common side.

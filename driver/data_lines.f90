@@ -11,11 +11,11 @@ module data_lines
   private
   public :: next_line, name_or_number, node_or_set, as_property, mesh_command, mesh_commands_known
 
-  character(16), parameter :: mesh_commands_known(23) = [character(16) :: 'COORdinates', &
+  character(16), parameter :: mesh_commands_known(26) = [character(16) :: 'COORdinates', &
     'ELEMents', 'OPERator', &
     'BEZIer', 'PATCh', 'MERGe', 'T-SPline', 'TIE', 'SET', 'MATErial', 'BOUNdary', 'DISPlacement', 'FORCe', &
     'FPROportional', &
-    'PROPortional', 'SLOAd', 'LINK', 'CONTact', 'HISTory', 'OUTPut', 'RESTart', 'EXPOrt', 'END']
+    'PROPortional', 'SLOAd', 'LINK', 'ENDFace', 'CLAMp', 'SYMMetry', 'CONTact', 'HISTory', 'OUTPut', 'RESTart', 'EXPOrt', 'END']
 
 contains
 

@@ -2,6 +2,7 @@ module element_library
   !! The only file that names all elements. To add one: `use` it, add its keyword and one case.
   use user_element, only: element_type
   use solid_element, only: solid_element_type
+  use shell_element, only: shell_element_type
   use gpts_element, only: gpts_element_type
   implicit none (type, external)
   private
@@ -14,9 +15,10 @@ contains
     class(element_type), allocatable, intent(out) :: element     !! unallocated if the keyword is unknown
     character(:), allocatable, intent(out) :: known              !! what exists, for messages
 
-    known = 'SOLId'
+    known = 'SOLId, SHELl'
     select case (keyword)
     case ('soli'); allocate (solid_element_type :: element)
+    case ('shel'); allocate (shell_element_type :: element)
     case ('gpts'); allocate (gpts_element_type :: element)
     end select
   end subroutine new_element

@@ -6,6 +6,7 @@ module equation_system
   use status_codes, only: ok, stale_pattern
   use model_data, only: model_type
   use dof_map, only: dof_map_type, build_dof_map
+  use end_face, only: end_face_geometry
   use user_element, only: mirror
   use sparse_pattern, only: pattern_builder, block_positions, begin_pattern, add_node_lists, add_equation_lists, &
     finish_pattern, locate_blocks, locate_lists
@@ -28,23 +29,33 @@ module equation_system
     procedure :: clear
     procedure :: add_element
     procedure :: add_loose
+    procedure :: add_curvature
   end type equation_system_type
 
 contains
 
-  subroutine start(self, model, symmetric)
-    !! Number the equations and note the couplings of the mesh.
+  subroutine start(self, model, faces, symmetric)
+    !! Number the equations and note the couplings of the mesh and of the end faces that are free to warp.
     class(equation_system_type), intent(inout) :: self
     type(model_type), intent(in) :: model
+    type(end_face_geometry), intent(in) :: faces(:)   !! of model%end_faces
     logical, intent(in) :: symmetric
+    integer, allocatable :: pairs(:)
+    integer :: a, k
 
     self%symmetric = symmetric
-    call build_dof_map(model, self%map)
+    call build_dof_map(model, faces, self%map)
     call begin_pattern(self%base, self%map%neq, self%map%first, self%map%count)
     call add_node_lists(self%base, model%mesh%node_ptr(1:model%mesh%ne + 1), &
                         model%mesh%nodes(1:model%mesh%node_ptr(model%mesh%ne + 1) - 1))
     if (size(self%map%links) > 0) call add_link_lists(self, model%mesh%node_ptr(1:model%mesh%ne + 1), &
                                                       model%mesh%nodes, self%base)
+    do k = 1, size(faces)
+      if (faces(k)%rigid) cycle
+      pairs = [(faces(k)%nodes(a), faces(k)%rotation, a=1, size(faces(k)%nodes))]
+      call add_node_lists(self%base, [(a, a=1, size(pairs) + 1, 2)], pairs)
+      if (size(self%map%links) > 0) call add_link_lists(self, [(a, a=1, size(pairs) + 1, 2)], pairs, self%base)
+    end do
   end subroutine start
 
   subroutine rebuild(self, model, ptr, nodes, status)
@@ -153,6 +164,22 @@ contains
     end if
     call scatter(self, nodes, offset, ke, symmetric)
   end subroutine add_loose
+
+  subroutine add_curvature(self, f)
+    !! The second derivatives of points that turn with a rigid face: f . d2u/dtheta2 on the diagonal of its angle.
+    class(equation_system_type), intent(inout) :: self
+    real(wp), intent(in) :: f(:, :)    !! all nodal forces (ndf,nn)
+    integer :: l, e, status
+
+    do l = self%map%linear + 1, size(self%map%links)
+      associate (d => self%map%links(l))
+        e = self%map%eq(d%comps(2), d%nodes(2))
+        if (e <= 0) cycle
+        call scatter_linked_matrix(self%matrix, [1, 2], [e], [1.0_wp], reshape([f(d%comp, d%node)*d%curve], [1, 1]), &
+                                   status)
+      end associate
+    end do
+  end subroutine add_curvature
 
   subroutine scatter(self, nodes, offset, ke, symmetric)
     class(equation_system_type), intent(inout) :: self

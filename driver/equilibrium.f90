@@ -4,7 +4,8 @@ module equilibrium
   use kinds, only: wp
   use status_codes, only: ok, status_text
   use model_data, only: model_type
-  use dof_map, only: is_prescribed, prescribed_factor
+  use end_face, only: end_face_geometry, build_end_face
+  use end_face_forces, only: assemble_end_faces
   use bulk_elements, only: bulk_type, prepare_bulk, assemble_bulk, commit_bulk, roll_back_bulk
   use interface_points, only: interface_points_type, prepare_interface, pair_interface, assemble_interface, &
     commit_interface, roll_back_interface, pair_lists, pairs_covered
@@ -17,12 +18,15 @@ module equilibrium
   implicit none (type, external)
   private
   public :: equilibrium_type, start_equilibrium, form_equilibrium, renew_pattern, commit, roll_back, place_text, &
-    work_of_increment, energies_type
+    work_of_increment, force_scale, energies_type
 
   type :: energies_type
     real(wp) :: elastic = 0, dissipated = 0, penalty = 0   !! [force*length]
     real(wp) :: work = 0                                   !! of loads and prescribed values since the start
     real(wp) :: penetration = 0                            !! largest [length]
+    real(wp) :: largest_work = 0                           !! largest |work| so far
+  contains
+    procedure :: balance_error
   end type energies_type
 
   type :: equilibrium_type
@@ -39,6 +43,7 @@ module equilibrium
     real(wp), allocatable :: r(:)                  !! residual of the equations
     real(wp) :: time = 0, time_n = 0
     type(energies_type) :: energies, energies_n
+    real(wp) :: largest_force = 0                  !! of reactions and loads, in all converged steps
     integer :: active = 0                          !! interface points that carry traction
     integer :: forced = 0                          !! interface points held on a kink for one evaluation: no solution
     integer :: point_count = 0                     !! of all interfaces
@@ -55,6 +60,7 @@ contains
     type(equilibrium_type), intent(inout), target :: eq
     type(timer_set), intent(inout) :: clock
     integer, intent(out) :: status
+    type(end_face_geometry), allocatable :: faces(:)
     integer :: i, n, place
     logical :: symmetric
 
@@ -81,10 +87,21 @@ contains
       eq%point_count = eq%point_count + eq%interfaces(i)%np
       symmetric = symmetric .and. model%interfaces(i)%element%symmetric
     end do
-    call eq%system%start(model, symmetric)
-    allocate (eq%u(model%ndf, model%nn), eq%un(model%ndf, model%nn), eq%f(model%ndf, model%nn), &
-      eq%f_moved(model%ndf, model%nn), eq%fext(model%ndf, model%nn), eq%f_n(model%ndf, model%nn), &
-      eq%fext_n(model%ndf, model%nn), source=0.0_wp)
+    n = 0
+    if (allocated(model%end_faces)) n = size(model%end_faces)
+    allocate (faces(n))
+    do i = 1, n
+      call build_end_face(model, i, faces(i), status)
+      if (status /= ok) then
+        eq%fault = 'end face '//model%end_faces(i)%name//': '//status_text(status)
+        return
+      end if
+    end do
+    call eq%system%start(model, faces, symmetric)
+    eq%solver%indefinite = eq%system%map%multipliers > 0
+    n = model%columns()
+    allocate (eq%u(model%ndf, n), eq%un(model%ndf, n), eq%f(model%ndf, n), eq%f_moved(model%ndf, n), &
+      eq%fext(model%ndf, n), eq%f_n(model%ndf, n), eq%fext_n(model%ndf, n), source=0.0_wp)
     allocate (eq%r(eq%system%map%neq), source=0.0_wp)
     call eq%system%map%expand(model, 0.0_wp, eq%u)
     eq%un = eq%u
@@ -142,9 +159,10 @@ contains
     sums%gap = 0
     eq%f = 0
     if (want_tangent) eq%f_moved = 0
+    call eq%system%map%linearise(eq%u)
     if (size(eq%interfaces) > 0) then
       call clock%start(phase_search)
-      x = model%x + eq%u(1:model%ndm, :)
+      x = model%x + eq%u(1:model%ndm, 1:model%nn)
       do i = 1, size(eq%interfaces)
         call pair_interface(model, eq%interfaces(i), x)
       end do
@@ -195,6 +213,10 @@ contains
       eq%fault = 'a surface load: '//status_text(status)
       return
     end if
+    call assemble_end_faces(eq%system, eq%u, du, moves, want_tangent, eq%f, eq%f_moved)
+    if (want_tangent) call eq%system%add_curvature(eq%f)
+    call eq%system%map%add_reactions(eq%f)
+    if (want_tangent) call eq%system%map%add_reactions(eq%f_moved)
     call eq%system%map%reduce(eq%f, eq%r)
     eq%energies%elastic = stored + sums%stored
     eq%energies%dissipated = dissipated + sums%dissipated
@@ -212,6 +234,8 @@ contains
     integer :: i
 
     eq%energies%work = eq%energies_n%work + work_of_increment(eq)
+    eq%energies%largest_work = max(eq%energies_n%largest_work, abs(eq%energies%work))
+    eq%largest_force = max(eq%largest_force, force_scale(eq))
     eq%energies_n = eq%energies
     eq%f_n = eq%f
     eq%fext_n = eq%fext
@@ -223,21 +247,32 @@ contains
     end do
   end subroutine commit
 
+  pure function force_scale(eq) result(force)
+    !! Size of the reactions and loads, with which a residual is compared.
+    type(equilibrium_type), intent(in) :: eq
+    real(wp) :: force
+
+    force = max(eq%system%map%reaction_size(eq%f), eq%system%map%force_size(eq%fext))
+  end function force_scale
+
   pure function work_of_increment(eq) result(work)
     !! Work of loads and reactions since the committed state: mean forces over the increment (trapezoidal rule).
     type(equilibrium_type), intent(in) :: eq
     real(wp) :: work                 !! [force*length]
-    integer :: i, a
 
-    work = 0
-    do a = 1, size(eq%u, 2)
-      do i = 1, size(eq%u, 1)
-        work = work + 0.5_wp*(eq%fext(i, a) + eq%fext_n(i, a))*(eq%u(i, a) - eq%un(i, a))
-        if (eq%system%map%eq(i, a) == is_prescribed) &
-          work = work + 0.5_wp*(eq%f(i, a) + eq%f_n(i, a))*(eq%u(i, a) - eq%un(i, a))
-      end do
-    end do
+    work = 0.5_wp*sum((eq%fext + eq%fext_n)*(eq%u - eq%un)) &
+      + eq%system%map%prescribed_work(0.5_wp*(eq%f + eq%f_n), eq%u - eq%un)
   end function work_of_increment
+
+  pure function balance_error(self) result(error)
+    !! (work - elastic - dissipated - penalty energy) as a share of the largest work so far; 0 before there is work.
+    !! It is the error of the trapezoidal rule and of Newton's tolerance, and shrinks with the steps.
+    class(energies_type), intent(in) :: self
+    real(wp) :: error
+
+    error = 0
+    if (self%largest_work > 0) error = (self%work - self%elastic - self%dissipated - self%penalty)/self%largest_work
+  end function balance_error
 
   subroutine roll_back(eq)
     !! The step is rejected.

@@ -2,21 +2,28 @@ module interface_commands
   !! CONTact: a pair of surfaces; what happens between them is law data of an interface element.
   !!
   !!     CONTact name SLAVe=surface MASTer=surface PENAlty=e [GP=n] [SIDE=-1] [REACh=r]
-  !!       lines of law data, if any, to a blank line or the next command
+  !!       COHEsive PMAX=p GIC=G GMAX=g | STIFfness=K        cohesion
+  !!       REVErsible                                        unloading follows the envelope back
+  !!       BONDed   surface | BOX x1 x2 y1 y2 [z1 z2]        part that is bonded from the start (default: everything)
+  !!       UNBOnded surface | BOX x1 x2 y1 y2 [z1 z2]        part that is cracked from the start
+  !!
+  !! The lines are optional and end with a blank line or the next command.
   use kinds, only: wp
   use messages, only: message_log, deck_place, quoted, name_hint, in_place
   use deck_record, only: record
   use deck_reader, only: deck_type => deck
-  use model_data, only: model_type, interface_type, surface_load_type, history_request, &
+  use model_data, only: model_type, interface_type, bond_region, surface_load_type, history_request, &
     set_elements, set_surface
   use model_sets, only: find_set, find_set_of_kind, set_names, as_surface
   use mesh_draft, only: draft_type, interface_request
   use user_element, only: element_type, property_record
   use element_library, only: new_element
-  use material_commands, only: read_properties, define_element
+  use material_commands, only: define_element
+  use data_lines, only: next_line, as_property
+  use bond_regions, only: read_region, resolve_regions
   implicit none (type, external)
   private
-  public :: read_contact, resolve_interfaces, resolve_loads, resolve_histories
+  public :: surface_of, read_contact, resolve_interfaces, resolve_loads, resolve_histories
 
 contains
 
@@ -71,13 +78,51 @@ contains
     call move_alloc(larger, model%interfaces)
 
     places = [command%at]
-    call read_properties(deck, properties, places, .true., log)
+    call read_law(deck, model%ndm, properties, places, model%interfaces(n + 1)%regions, log)
     call new_element('gpts', element, known)
     if (penalty > 0) call define_element(element, model%ndm, 'CONTact', command%at, properties, &
       places, log)
     call move_alloc(element, model%interfaces(n + 1)%element)
     call note_surfaces(command, draft, log)
   end subroutine read_contact
+
+  subroutine read_law(deck, ndm, properties, places, regions, log)
+    !! The lines after a CONTact record: law data for the element, parts for the interface.
+    type(deck_type), intent(inout) :: deck
+    integer, intent(in) :: ndm
+    type(property_record), allocatable, intent(inout) :: properties(:)   !! appended to
+    type(deck_place), allocatable, intent(inout) :: places(:)            !! of each
+    type(bond_region), allocatable, intent(out) :: regions(:)
+    type(message_log), intent(inout) :: log
+    type(property_record) :: property
+    type(bond_region) :: region
+    type(record) :: rec
+    logical :: more, cohesive
+    integer :: i
+
+    allocate (regions(0))
+    cohesive = .false.
+    do
+      call next_line(deck, rec, log, more, .true.)
+      if (.not. more) exit
+      if (rec%is_damaged) cycle
+      select case (rec%key(1))
+      case ('bond', 'unbo')
+        call read_region(rec, ndm, region, log)
+        regions = [regions, region]
+      case default
+        cohesive = cohesive .or. rec%key(1) == 'cohe'
+        call as_property(rec, 1, property, log)
+        properties = [properties, property]
+        places = [places, rec%at]
+      end select
+    end do
+    if (cohesive) return
+    do i = 1, size(regions)
+      call log%add_error(regions(i)%at, 'CONTact', 'an interface without cohesion has no bonded part', &
+        'Add COHEsive PMAX=p GIC=G GMAX=g, or leave the line out')
+    end do
+  end subroutine read_law
 
   subroutine note_surfaces(command, draft, log)
     type(record), intent(in) :: command
@@ -108,6 +153,7 @@ contains
     to%gp = from%gp
     to%side = from%side
     to%reach = from%reach
+    call move_alloc(from%regions, to%regions)
     call move_alloc(from%element, to%element)
   end subroutine move_interface
 
@@ -128,6 +174,7 @@ contains
           log%add_error(request%at, 'CONTact', 'slave and master are the same surface', &
           'Contact of a surface with itself needs two parts of it')
       end associate
+      call resolve_regions(model, i, log)
     end do
   end subroutine resolve_interfaces
 

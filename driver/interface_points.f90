@@ -1,27 +1,37 @@
 module interface_points
   !! The interfaces of a model during a run: slave points with what they precomputed, their pairing and their history;
   !! pairing and assembly. The kernel is reached through the user-element interface, as every element is.
+  !!
+  !! History belongs to the slave point, wherever it slides. A point that is bonded (its element says so by the committed
+  !! history) and whose projection leaves the master's edge keeps its facet's smooth extension, until it is spent; then,
+  !! and without cohesion, it is unpaired beyond the edge. What an unpaired point has dissipated stays in the sum.
+  !!
+  !! Bonded from the start are the points that the deck bonds, if in the reference position they have a partner on the
+  !! master and are not already open by as much as spends them.
   use kinds, only: wp
-  use status_codes, only: ok
+  use status_codes, only: ok, bond_lost, nothing_bonded
   use model_data, only: model_type
   use gauss_rules, only: gauss_legendre, tensor_rule
   use facets, only: facet_surface, build_facets
   use contact_search, only: master_search, start_search, move_master, pair_point
   use equation_system, only: equation_system_type
   use bulk_elements, only: add_moved_force
-  use user_element, only: element_geometry, element_state, element_energy, task_prepare, task_tangent, &
-    task_dissipation_gradient
+  use bond_regions, only: is_bonded_at
+  use user_element, only: element_type, element_geometry, element_state, element_energy, task_prepare, task_residual, &
+    task_tangent, task_dissipation_gradient
   implicit none (type, external)
   private
   public :: interface_points_type, prepare_interface, pair_interface, assemble_interface, commit_interface, &
-    add_dissipation_gradient, roll_back_interface, pair_lists, pairs_covered, forget_search
+    add_dissipation_gradient, roll_back_interface, place_of_slave, pair_lists, pairs_covered, forget_search
 
   integer, parameter :: margin = 2   !! facets around the present pair that the matrix pattern has room for
 
   type :: interface_points_type
     type(facet_surface) :: slave, master
     type(master_search) :: search
+    class(element_type), allocatable :: element !! a copy, which judges histories
     integer :: np = 0                           !! points
+    integer :: np_bonded = 0                    !! those that are bonded at the start
     integer :: nen_max = 0                      !! largest number of functions of a pair
     integer :: nhist = 0                        !! history words of a point
     integer :: ntable = 0                       !! table words kept for each point (its stride)
@@ -127,7 +137,71 @@ contains
     end associate
     call start_search(points%search, model%ndm, points%master, reach)
     points%search%side = real(model%interfaces(number)%side, wp)
+    allocate (points%element, source=model%interfaces(number)%element)
+    if (points%nhist == 0) return
+    call begin_histories(model, number, points, status)
+    if (status == ok .and. points%np_bonded == 0) status = nothing_bonded
   end subroutine prepare_interface
+
+  subroutine begin_histories(model, number, points, status)
+    !! Bond the points that the deck says and that have a partner in the reference position.
+    type(model_type), intent(in), target :: model
+    integer, intent(in) :: number
+    type(interface_points_type), intent(inout), target :: points
+    integer, intent(out) :: status
+    type(pair_work), target :: work
+    type(element_geometry) :: geo
+    type(element_state) :: state
+    type(element_energy) :: energy
+    real(wp) :: xs(model%ndm), u(model%ndf, model%nn)
+    integer :: i, s
+    logical :: bonded
+
+    status = ok
+    u = 0
+    call start_work(model, number, points, 0.0_wp, 0.0_wp, work, geo, state)
+    associate (el => points%element)
+      do i = 1, points%np
+        s = points%facet_of(i)
+        call place_of_slave(model%x, points, i, xs)
+        bonded = is_bonded_at(model, model%interfaces(number)%regions, xs, points%slave%element(s), points%slave%side(s))
+        call el%begin_history(bonded, points%hist_n(:, i))
+      end do
+      call pair_interface(model, points, model%x)
+      do i = 1, points%np
+        if (.not. el%is_bonded(points%hist_n(:, i))) cycle
+        bonded = points%facet(i) > 0
+        if (bonded) then
+          call gather_pair(model, points, i, u, u, el%ndf, .false., work, geo, state)
+          call el%evaluate(task_residual, geo, state, work%fe, work%ke, energy, status)
+          if (status /= ok) return
+          bonded = el%is_bonded(points%hist(:, i))
+        end if
+        if (.not. bonded) call el%begin_history(.false., points%hist_n(:, i))
+        if (bonded) points%np_bonded = points%np_bonded + 1
+      end do
+    end associate
+    points%hist = points%hist_n
+    call commit_interface(points)
+    call forget_search(points)
+  end subroutine begin_histories
+
+  pure subroutine place_of_slave(x, points, i, xs)
+    !! Position of a slave point.
+    real(wp), intent(in) :: x(:, :)                 !! of the nodes (ndm,nn) [length]
+    type(interface_points_type), intent(in) :: points
+    integer, intent(in) :: i
+    real(wp), intent(out) :: xs(:)                  !! (ndm) [length]
+    integer :: a, first
+
+    associate (set => points%slave%set)
+      first = set%node_ptr(points%facet_of(i)) - 1
+      xs = 0
+      do a = 1, set%nen(points%facet_of(i))
+        xs = xs + points%table(1 + a, i)*x(:, set%nodes(first + a))
+      end do
+    end associate
+  end subroutine place_of_slave
 
   function largest_facet(model, surface) result(size_)
     !! Longest diagonal of the facets' control polygons [length].
@@ -149,10 +223,9 @@ contains
     type(model_type), intent(in) :: model
     type(interface_points_type), intent(inout), target :: points
     real(wp), intent(in) :: x(:, :)                 !! current positions (ndm,nn) [length]
-    integer, pointer, contiguous :: nodes(:)
     real(wp) :: xs(model%ndm)
-    integer :: i, a, f
-    logical :: forced
+    integer :: i
+    logical :: forced, bonded
 
     if (allocated(points%search%x)) then
       if (all(abs(points%search%x - x) <= 0)) return  ! the pairs stand: pairing again could release a forced one
@@ -160,14 +233,11 @@ contains
     points%forced = 0
     call move_master(points%search, x)
     do i = 1, points%np
-      f = points%facet_of(i)
-      nodes => points%slave%set%connectivity(f)
-      xs = 0
-      do a = 1, size(nodes)
-        xs = xs + points%table(1 + a, i)*x(:, nodes(a))
-      end do
-      call pair_point(points%search, points%master, model%w, xs, points%facet(i), points%xi(:, i), points%held(:, i), &
-                      forced)
+      call place_of_slave(x, points, i, xs)
+      bonded = .false.
+      if (points%nhist > 0) bonded = points%element%is_bonded(points%hist_n(:, i))
+      call pair_point(points%search, points%master, model%w, xs, bonded, points%facet(i), points%xi(:, i), &
+                      points%held(:, i), forced)
       if (forced) points%forced = points%forced + 1
     end do
   end subroutine pair_interface
@@ -203,8 +273,12 @@ contains
         points%traction(i) = 0
         points%active(i) = .false.
         if (points%facet(i) == 0) then
-          if (points%nhist > 0) points%hist(:, i) = points%hist_n(:, i)
-          cycle
+          if (points%nhist == 0) cycle
+          if (el%is_bonded(points%hist_n(:, i))) then
+            status = bond_lost
+            place = i
+            return
+          end if
         end if
         call gather_pair(model, points, i, u, un, el%ndf, task == task_tangent, work, geo, state)
         call el%evaluate(task, geo, state, work%fe, work%ke, energy, status)
@@ -287,7 +361,7 @@ contains
   end subroutine start_work
 
   subroutine gather_pair(model, points, i, u, un, ndf, want_tangent, work, geo, state)
-    !! Geometry and state of point i with its master facet.
+    !! Geometry and state of point i with its master facet, or alone if it is unpaired.
     type(model_type), intent(in), target :: model
     type(interface_points_type), intent(inout), target :: points
     integer, intent(in) :: i
@@ -302,10 +376,11 @@ contains
     s = points%facet_of(i)
     m = points%facet(i)
     ns = points%slave%set%nen(s)
-    nm = points%master%set%nen(m)
+    nm = 0
+    if (m > 0) nm = points%master%set%nen(m)
     n = ns + nm
     work%nodes(1:ns) = points%slave%set%connectivity(s)
-    work%nodes(ns + 1:n) = points%master%set%connectivity(m)
+    if (m > 0) work%nodes(ns + 1:n) = points%master%set%connectivity(m)
     geo%nen = n
     geo%nes = ns
     geo%degree = points%slave%set%degree(:, s)
@@ -323,11 +398,13 @@ contains
     geo%we => work%we(1:ns)
     geo%table => points%table(:, i)
     geo%master%nen = nm
-    geo%master%degree = points%master%set%degree(1:2, m)
-    geo%master%xi(1:geo%dp) = points%xi(:, i)
-    geo%master%held(1:geo%dp) = points%held(:, i)
-    geo%master%we => work%wm(1:nm)
-    geo%master%ce => points%master%set%operator(m)
+    if (m > 0) then
+      geo%master%degree = points%master%set%degree(1:2, m)
+      geo%master%xi(1:geo%dp) = points%xi(:, i)
+      geo%master%held(1:geo%dp) = points%held(:, i)
+      geo%master%we => work%wm(1:nm)
+      geo%master%ce => points%master%set%operator(m)
+    end if
     state%hist => points%hist(:, i)
     state%hist_n => points%hist_n(:, i)
     work%fe(1:ndf, 1:n) => work%f

@@ -43,11 +43,14 @@ module linear_solver
     integer :: backend = backend_auto         !! requested
     integer :: ordering = order_auto          !! requested
     integer :: variant = variant_auto         !! of CHOLMOD
+    logical :: indefinite = .false.           !! expected not to be positive definite (multipliers): no Cholesky first
     logical :: wide_integers = .false.        !! UMFPACK with 64-bit integers from the start
     type(solver_statistics) :: statistics
     type(cholesky_factor_type), private :: cholesky
     type(lu_factor_type), private :: lu
     integer, private :: epoch = -1, n = -1, nnz = -1, ordered_by = -1
+    integer, private :: failures = 0          !! of CHOLMOD, one after another
+    integer, private :: skips = 0             !! factorisations for which it is not tried
     integer, allocatable, private :: perm(:)
     integer, allocatable, private :: full_ptr(:), full_ind(:), source(:)  !! both triangles of a symmetric matrix
     real(wp), allocatable, private :: full_values(:)
@@ -86,7 +89,7 @@ contains
       self%nnz = pattern%nnz
       self%ordered_by = self%ordering
     end if
-    if (uses_cholesky(self%backend, pattern)) then
+    if (uses_cholesky(self%backend, self%indefinite, pattern)) then
       if (.not. self%cholesky%analysed) then
         self%statistics%analyses = self%statistics%analyses + 1
         call self%cholesky%analyse(pattern%colptr, pattern%rowind, self%perm, self%variant, status)
@@ -97,14 +100,15 @@ contains
     self%statistics%seconds_analyse = self%statistics%seconds_analyse + seconds() - start
   end subroutine analyse
 
-  pure function uses_cholesky(backend, pattern) result(yes)
+  pure function uses_cholesky(backend, indefinite, pattern) result(yes)
     integer, intent(in) :: backend
+    logical, intent(in) :: indefinite
     type(sparse_pattern_type), intent(in) :: pattern
     logical :: yes
 
     if (backend == backend_cholmod .and. .not. pattern%symmetric) &
       error stop 'linear_solver: CHOLMOD was requested for an unsymmetric matrix'
-    yes = pattern%symmetric .and. backend /= backend_umfpack
+    yes = pattern%symmetric .and. (backend == backend_cholmod .or. backend == backend_auto .and. .not. indefinite)
   end function uses_cholesky
 
   subroutine order(self, pattern, status)
@@ -219,7 +223,7 @@ contains
     start = seconds()
     self%statistics%factorisations = self%statistics%factorisations + 1
     associate (statistics => self%statistics)
-      if (uses_cholesky(self%backend, matrix%pattern)) then
+      if (uses_cholesky(self%backend, self%indefinite, matrix%pattern)) then
         statistics%backend = backend_cholmod
         call self%cholesky%factorise(matrix%pattern%colptr, matrix%pattern%rowind, matrix%values, status)
         statistics%nonzeros = self%cholesky%nonzeros
@@ -229,8 +233,12 @@ contains
           statistics%rcond = self%cholesky%rcond
           statistics%determinant_sign = 1
           statistics%negative_pivots = 0
+          self%failures = 0
         else if (status == not_positive_definite .and. self%backend == backend_auto) then
+          ! an unstable path stays unstable for a while: CHOLMOD is tried less and less often
           statistics%fallbacks = statistics%fallbacks + 1
+          self%failures = min(self%failures + 1, 5)
+          self%skips = 2**(self%failures - 1) - 1
           call self%factorise_lu(matrix, status)
         end if
       else
@@ -326,6 +334,8 @@ contains
     if (allocated(self%source)) deallocate (self%full_ptr, self%full_ind, self%source)
     if (allocated(self%full_values)) deallocate (self%full_values)
     self%epoch = -1
+    self%failures = 0
+    self%skips = 0
     self%statistics%determinant_sign = 0
   end subroutine release
 

@@ -174,7 +174,7 @@ contains
     status = ok
     fext = 0
     if (allocated(model%force)) then
-      do a = 1, model%nn
+      do a = 1, size(model%force, 2)
         do i = 1, model%ndf
           if (abs(model%force(i, a)) > 0) fext(i, a) = model%force(i, a) &
             *prescribed_factor(model%props, model%force_prop(i, a), time)
@@ -182,7 +182,8 @@ contains
       end do
     end if
     do l = 1, size(loads%dead)
-      fext = fext + prescribed_factor(model%props, loads%dead(l)%prop, time)*loads%dead(l)%force
+      fext(:, 1:model%nn) = fext(:, 1:model%nn) &
+        + prescribed_factor(model%props, loads%dead(l)%prop, time)*loads%dead(l)%force
     end do
     f = f - fext
     do l = 1, size(loads%follower)

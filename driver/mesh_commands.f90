@@ -15,7 +15,9 @@ module mesh_commands
   use set_commands, only: read_set, read_tie
   use material_commands, only: read_material
   use condition_commands, only: read_values, read_proportional, read_links, read_surface_load
+  use shell_conditions, only: read_shell_condition
   use interface_commands, only: read_contact
+  use end_face_commands, only: read_end_face
   use output_commands, only: read_history, read_output, read_restart
   use mesh_completion, only: complete_model
   use model_summary, only: describe_model
@@ -94,7 +96,9 @@ contains
     case ('prop'); call read_proportional(deck, rec, model, log)
     case ('link'); call read_links(deck, model, draft, log)
     case ('sloa'); call read_surface_load(rec, model, draft, log)
+    case ('clam', 'symm'); call read_shell_condition(rec, draft, log)
     case ('cont'); call read_contact(deck, rec, model, draft, log)
+    case ('endf'); call read_end_face(rec, model%ndm, draft, log)
     case ('hist'); call read_history(rec, draft, log)
     case ('outp'); call read_output(rec, model, log)
     case ('rest'); call read_restart(rec, model, log)

@@ -9,6 +9,8 @@ module mesh_completion
   use spline_commands, only: follow_tied_nodes
   use mesh_exports, only: check_exports
   use conditions, only: resolve_conditions, resolve_links
+  use shell_conditions, only: resolve_clamps, resolve_symmetry
+  use end_face_commands, only: resolve_end_faces, resolve_face_histories
   use interface_commands, only: resolve_interfaces, resolve_loads, resolve_histories
   use model_check, only: check_mesh, check_nodes, check_geometry, switch_off_unused
   implicit none (type, external)
@@ -47,11 +49,15 @@ contains
     call resolve_ties(model, draft, log)
     call follow_tied_nodes(model, draft)
     call resolve_sets(model, draft, log)
+    call resolve_clamps(model, draft, log)
     call resolve_conditions(model, draft, log)
     call resolve_links(model, draft, log)
+    call resolve_symmetry(model, draft, log)
+    call resolve_end_faces(model, draft, log)
     call resolve_loads(model, draft, log)
     call resolve_interfaces(model, draft, log)
     call resolve_histories(model, draft, log)
+    call resolve_face_histories(model, draft, log)
     if (all_materials .and. log%error_count() == 0) call switch_off_unused(model, draft, log)
     if (log%error_count() == error_count) call check_exports(model, log)
     call model%mesh%finish()

@@ -12,7 +12,7 @@ module mesh_draft
   public :: append_value
   public :: draft_type, element_origin, set_request, value_request, tie_request, load_request, &
     interface_request, &
-    history_draft, link_request, named_operator, patch_part
+    history_draft, link_request, end_face_request, named_operator, patch_part, shell_request
 
   type :: element_origin
     !! The data set that elements come from.
@@ -58,9 +58,21 @@ module mesh_draft
     character(:), allocatable :: slave, master
   end type interface_request
 
+  type :: end_face_request
+    type(deck_place) :: at
+    character(:), allocatable :: name, surface
+    logical :: has_value = .false., turns = .false.   !! a rotation, else a moment
+    real(wp) :: value = 0                     !! at factor 1
+    integer :: prop = 0                       !! time function (0: sum of all)
+    logical :: warps = .false.
+    logical :: has_axis = .false.
+    real(wp) :: axis(3) = 0
+  end type end_face_request
+
   type :: history_draft
     type(deck_place) :: at
-    character(:), allocatable :: set          !! '' : the whole model
+    character(:), allocatable :: set          !! '' : the whole model, or an end face
+    character(:), allocatable :: end_face     !! unallocated: none
     type(history_request) :: request
   end type history_draft
 
@@ -74,6 +86,13 @@ module mesh_draft
     integer, allocatable :: comps(:)
     real(wp), allocatable :: coefs(:)
   end type link_request
+
+  type :: shell_request
+    !! CLAMp, SYMMetry: a condition on an edge of a shell.
+    type(deck_place) :: at
+    character(4) :: keyword = ''              !! clam, symm
+    character(:), allocatable :: set          !! the edge
+  end type shell_request
 
   type :: named_operator
     !! OPERator: an extraction operator that several elements share.
@@ -112,8 +131,10 @@ module mesh_draft
     type(value_request), allocatable :: boundary(:), displacement(:), force(:), proportional(:)
     integer :: n_boundary = 0, n_displacement = 0, n_force = 0, n_proportional = 0
     type(link_request), allocatable :: links(:)
+    type(shell_request), allocatable :: shell_conditions(:)
     type(load_request), allocatable :: loads(:)
     type(interface_request), allocatable :: interfaces(:)
+    type(end_face_request), allocatable :: end_faces(:)
     type(history_draft), allocatable :: histories(:)
     integer, allocatable :: tied_to(:)          !! after TIE: the node that stands for each (nn)
   contains
@@ -137,7 +158,7 @@ contains
     allocate (self%parts(0))
     allocate (self%origins(0), self%operators(0), self%sets(0), self%ties(0), self%links(0), &
       self%loads(0), &
-      self%interfaces(0), self%histories(0))
+      self%interfaces(0), self%end_faces(0), self%histories(0), self%shell_conditions(0))
     allocate (self%boundary(0), self%displacement(0), self%force(0), self%proportional(0))
     allocate (model%sets(0), model%materials(0), model%props(0), model%links(0), model%loads(0), &
       model%interfaces(0), model%histories(0), model%exports(0))

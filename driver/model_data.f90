@@ -8,8 +8,8 @@ module model_data
   use messages, only: deck_place
   implicit none (type, external)
   private
-  public :: model_type, named_set, material_type, time_function, surface_load_type, interface_type, &
-    history_request, output_request, linear_constraint, extraction_set_type, mesh_export
+  public :: model_type, named_set, material_type, time_function, surface_load_type, interface_type, bond_region, &
+    history_request, output_request, linear_constraint, end_face_type, extraction_set_type, mesh_export
   public :: set_nodes, set_elements, set_surface
 
   integer, parameter :: set_nodes = 1, set_elements = 2, set_surface = 3
@@ -48,6 +48,15 @@ module model_data
     character(:), allocatable :: place
   end type surface_load_type
 
+  type :: bond_region
+    !! A part of a cohesive interface that is bonded from the start, or is not.
+    logical :: bonded = .true.                   !! BONDed; else UNBOnded
+    character(:), allocatable :: name            !! of a surface; unallocated for a box
+    integer :: set = 0                           !! its index into sets
+    real(wp) :: low(3) = 0, high(3) = 0          !! a box of reference positions [length]
+    type(deck_place) :: at
+  end type bond_region
+
   type :: interface_type
     !! A pair of surfaces coupled by Gauss-point-to-surface elements.
     character(:), allocatable :: name, place
@@ -55,15 +64,31 @@ module model_data
     integer :: gp = 2                    !! Gauss points per direction on each slave facet
     integer :: side = 1                  !! sign of the master's normal (shells)
     real(wp) :: reach = 0                !! search distance [length], 0: chosen from facet sizes
+    type(bond_region), allocatable :: regions(:)  !! with cohesion: what is bonded; none: everything
     class(element_type), allocatable :: element
   end type interface_type
+
+  type :: end_face_type
+    !! A surface that turns about an axis through its centroid (ENDFace), rigid or free to warp. Its angle, multiplier
+    !! and translation are globals: components of columns behind those of the nodes in arrays of control values.
+    character(:), allocatable :: name, place
+    integer :: set = 0                   !! index into sets (surface)
+    logical :: warps = .false.           !! only the mean rotation is that of the face
+    real(wp) :: axis(3) = [0, 0, 1]      !! unit vector
+    integer :: rotation = 0              !! column: component 1 the angle [rad], 2 the multiplier of a face that warps
+    integer :: translation = 0           !! column: translation of the centroid; 0: the face warps
+  end type end_face_type
 
   type :: history_request
     character(:), allocatable :: label, place
     integer :: set = 0                   !! node set or surface (index into sets), 0: the whole model
     logical :: reaction = .false.        !! <label>_rx,<label>_ry,<label>_rz: sums over the set
     logical :: displacement = .false.    !! <label>_ux,...: of the one node, or the mean over the set
+    integer :: end_face = 0              !! index into end_faces
+    logical :: moment = .false.          !! <label>_m: that the support (or the load) applies to the face
+    logical :: rotation = .false.        !! <label>_rot: angle [rad]
     logical :: work = .false., elastic = .false., penalty = .false., dissipated = .false., penetration = .false.
+    logical :: balance = .false.         !! energy_error
   end type history_request
 
   type :: output_request
@@ -104,20 +129,32 @@ module model_data
     type(named_set), allocatable :: sets(:)
     type(material_type), allocatable :: materials(:)
     type(time_function), allocatable :: props(:)
-    logical, allocatable :: fixed(:, :)              !! (ndf,nn) the value is prescribed
-    real(wp), allocatable :: disp(:, :)              !! (ndf,nn) its amplitude
-    integer, allocatable :: disp_prop(:, :)          !! (ndf,nn) its time function (0: all props summed, as in FEAP)
-    real(wp), allocatable :: force(:, :)             !! (ndf,nn) dead nodal forces
-    integer, allocatable :: force_prop(:, :)         !! (ndf,nn)
+    ! conditions of the nodes' control values and, in further columns, of the globals
+    logical, allocatable :: fixed(:, :)              !! (ndf,columns) the value is prescribed
+    real(wp), allocatable :: disp(:, :)              !! (ndf,columns) its amplitude
+    integer, allocatable :: disp_prop(:, :)          !! (ndf,columns) its time function (0: all props summed, as in FEAP)
+    real(wp), allocatable :: force(:, :)             !! (ndf,columns) dead nodal forces
+    integer, allocatable :: force_prop(:, :)         !! (ndf,columns)
     type(linear_constraint), allocatable :: links(:)
+    integer :: globals = 0                           !! columns of globals
+    type(end_face_type), allocatable :: end_faces(:)
     type(surface_load_type), allocatable :: loads(:)
     type(interface_type), allocatable :: interfaces(:)
     type(history_request), allocatable :: histories(:)
     type(output_request) :: outputs
     type(mesh_export), allocatable :: exports(:)
+  contains
+    procedure :: columns
   end type model_type
 
 contains
+
+  pure integer function columns(self)
+    !! Of arrays of control values: nodes, then globals.
+    class(model_type), intent(in) :: self
+
+    columns = self%nn + self%globals
+  end function columns
 
   pure function time_function_at(self, time) result(value)
     class(time_function), intent(in) :: self

@@ -69,6 +69,13 @@ contains
           ' Gauss points per direction'
       end associate
     end do
+    do i = 1, size(model%end_faces)
+      associate (face => model%end_faces(i))
+        write (unit, '(a)') 'end face    ' // face%name // ': ' // model%sets(face%set)%name // &
+          trim(merge(', free to warp', ', rigid       ', face%warps)) // &
+          merge(', rotation prescribed', ', moment given       ', model%fixed(1, face%rotation))
+      end associate
+    end do
     do i = 1, size(model%loads)
       write (unit, '(a)') 'load        ' // trim(model%loads(i)%kind) // ' on ' // &
         model%sets(model%loads(i)%set)%name

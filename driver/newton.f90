@@ -11,7 +11,7 @@ module newton
   use status_codes, only: ok, no_convergence, singular_matrix, status_text
   use model_data, only: model_type
   use dof_map, only: is_prescribed
-  use equilibrium, only: equilibrium_type, form_equilibrium
+  use equilibrium, only: equilibrium_type, form_equilibrium, force_scale
   use timers, only: timer_set, phase_factorise, phase_solve
   implicit none (type, external)
   private
@@ -27,6 +27,7 @@ module newton
   end type newton_settings
 
   real(wp), parameter :: rounding = 1.0e-12_wp             !! a relative correction that is only rounding
+  real(wp), parameter :: left_over = 1.0e-3_wp            !! share of the run's largest forces that always counts
   real(wp), parameter :: settled_residual = 1.0e-6_wp     !! and the relative residual that it may leave
 
   type :: newton_record
@@ -64,12 +65,10 @@ contains
     integer :: k, fallbacks
     logical :: look, settled
 
-    allocate (report%records(0), dq(eq%system%map%neq), du(model%ndf, model%nn))
+    allocate (report%records(0), dq(eq%system%map%neq), du(model%ndf, model%columns()))
     report%fault = ''
     eq%time = t_new
-    du = eq%un
-    call eq%system%map%expand(model, t_new, du)
-    du = du - eq%un
+    call eq%system%map%prescribed_increment(model, t_new, eq%un, du)
     if (continue_rate) then
       eq%u = eq%un + (t_new - eq%time_n)*rate
       call eq%system%map%expand(model, t_new, eq%u)
@@ -157,7 +156,7 @@ contains
         call eq%system%map%add_increment(dq, eq%u)
       end if
       settled = report%records(size(report%records))%changed == 0 .and. &
-        maxval(abs(dq)) <= rounding*maxval(abs(eq%u)) .and. report%residual <= settled_residual
+        eq%system%map%increment_size(dq) <= rounding*eq%system%map%value_size(eq%u) .and. report%residual <= settled_residual
       look = settled .or. energy <= settings%energy_tolerance*energy_reference
     end do
     if (len(report%fault) == 0) report%fault = eq%fault
@@ -201,13 +200,14 @@ contains
   end subroutine search_line
 
   subroutine measure(eq, reference, size_r)
-    !! |r|, and the forces that it is compared with: reactions and loads, the largest so far.
+    !! |r|, and the forces that it is compared with: reactions and loads, the largest of the increment so far. Bodies
+    !! that have come apart carry none, only the rounding of what they carried.
     type(equilibrium_type), intent(in) :: eq
     real(wp), intent(inout) :: reference
     real(wp), intent(out) :: size_r
 
-    size_r = norm2(eq%r)
-    reference = max(reference, sqrt(sum(eq%f**2, mask=eq%system%map%eq == is_prescribed)), norm2(eq%fext))
+    reference = max(reference, force_scale(eq), left_over*eq%largest_force)
+    size_r = eq%system%map%residual_size(eq%r, reference)
   end subroutine measure
 
   pure function ratio(size_r, reference) result(relative)

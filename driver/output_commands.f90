@@ -9,24 +9,27 @@ module output_commands
   private
   public :: read_history, read_output, read_restart
 
-  character(12), parameter :: history_words(8) = [character(12) :: 'REACtion', 'DISPlacement', &
-    'WORK', 'ELAStic', 'PENAlty', 'DISSipated', 'PENEtration', 'SET']
+  character(12), parameter :: history_words(12) = [character(12) :: 'REACtion', 'DISPlacement', &
+    'WORK', 'ELAStic', 'PENAlty', 'DISSipated', 'PENEtration', 'BALAnce', 'SET', 'ENDFace', &
+    'MOMEnt', 'ROTAtion']
 
 contains
 
   subroutine read_history(command, draft, log)
     !! HISTory label SET=name [REACtion] [DISPlacement], or
-    !! HISTory [WORK] [ELAStic] [PENAlty] [DISSipated] [PENEtration] of the whole model.
+    !! HISTory label ENDFace=name [MOMEnt] [ROTAtion] (both if neither is named), or
+    !! HISTory [WORK] [ELAStic] [PENAlty] [DISSipated] [PENEtration] [BALAnce] of the whole model.
     type(record), intent(in) :: command
     type(draft_type), intent(inout) :: draft
     type(message_log), intent(inout) :: log
     type(history_draft) :: new
-    integer :: first, i, set_item
+    integer :: first, i, set_item, face_item
 
     new%at = command%at
     new%set = ''
     new%request%label = ''
     set_item = 0
+    face_item = 0
     first = 2
     if (command%has('set')) then
       call command%text(2, new%request%label, log, 'label')
@@ -34,18 +37,28 @@ contains
       call command%check_options(['set'], log)
       set_item = command%find('set')
       first = 3
+    else if (command%has('endface')) then
+      call command%text(2, new%request%label, log, 'label')
+      new%end_face = ''
+      call command%text_option('endface', new%end_face, log)
+      call command%check_options(['endface'], log)
+      face_item = command%find('endface')
+      first = 3
     end if
     associate (r => new%request)
       do i = first, command%count
-        if (i == set_item .or. i + 1 == set_item) cycle
+        if (i == set_item .or. i + 1 == set_item .or. i == face_item .or. i + 1 == face_item) cycle
         select case (command%key(i))
         case ('reac'); r%reaction = .true.
         case ('disp'); r%displacement = .true.
+        case ('mome'); r%moment = .true.
+        case ('rota'); r%rotation = .true.
         case ('work'); r%work = .true.
         case ('elas'); r%elastic = .true.
         case ('pena'); r%penalty = .true.
         case ('diss'); r%dissipated = .true.
         case ('pene'); r%penetration = .true.
+        case ('bala'); r%balance = .true.
         case default
           call command%add_error(log, 'unknown quantity ' // quoted(command%word(i)), &
             known_names(history_words, 'words'), i)
@@ -57,6 +70,13 @@ contains
         'Write HISTory label SET=name REACtion DISPlacement')
       if (set_item > 0 .and. .not. (r%reaction .or. r%displacement)) call command%add_error(log, &
         'nothing is asked of the set', 'Add REACtion or DISPlacement')
+      if ((r%moment .or. r%rotation) .and. face_item == 0) call command%add_error(log, &
+        'moments and rotations are those of an end face', &
+        'Write HISTory label ENDFace=name MOMEnt ROTAtion')
+      if (face_item > 0 .and. .not. (r%moment .or. r%rotation)) then
+        r%moment = .true.
+        r%rotation = .true.
+      end if
       if (command%count < 2) call command%add_error(log, 'nothing is asked for', &
         known_names(history_words, 'words'))
       if (is_taken(r%label)) call command%add_error(log, 'the label ' // quoted(r%label) // &

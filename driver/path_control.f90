@@ -96,7 +96,7 @@ contains
       end if
       if (status == ok) exit
       call roll_back(eq)
-      call eq%system%map%follow(model, eq%u)
+      call eq%system%map%follow(eq%u)
       report%cutbacks = report%cutbacks + 1
       halvings = halvings + 1
       call shorten(path)

@@ -32,7 +32,8 @@ contains
     call store%write('/steps', [step, control%level, merge(1, 0, control%has_rate), eq%active])
     call store%write('/times', [eq%time_n, control%time_before])
     call store%write('/energies', [eq%energies_n%elastic, eq%energies_n%dissipated, eq%energies_n%penalty, &
-                                   eq%energies_n%work, eq%energies_n%penetration])
+                                   eq%energies_n%work, eq%energies_n%penetration, eq%energies_n%largest_work])
+    call store%write('/largest_force', [eq%largest_force])
     call store%write('/u', eq%un)
     call store%write('/f', eq%f_n)
     call store%write('/fext', eq%fext_n)
@@ -65,6 +66,7 @@ contains
     type(hdf5_store_type) :: store
     character(:), allocatable :: group, stored
     integer, allocatable :: numbers(:), facet(:), held(:, :)
+    real(wp), allocatable :: force(:)
     real(wp), allocatable :: times(:), energies(:), u(:, :), f(:, :), fext(:, :), rate(:, :), history(:), xi(:, :), &
       hist(:, :)
     integer :: i
@@ -85,6 +87,7 @@ contains
     call store%read('/steps', numbers)
     call store%read('/times', times)
     call store%read('/energies', energies)
+    call store%read('/largest_force', force)
     call store%read('/u', u)
     call store%read('/f', f)
     call store%read('/fext', fext)
@@ -108,7 +111,9 @@ contains
       eq%energies_n%penalty = energies(3)
       eq%energies_n%work = energies(4)
       eq%energies_n%penetration = energies(5)
+      eq%energies_n%largest_work = energies(6)
       eq%energies = eq%energies_n
+      eq%largest_force = force(1)
       eq%un = u
       eq%u = u
       eq%f_n = f

@@ -9,6 +9,7 @@ module run_results
   use history_writer, only: history_writer_type
   use field_output, only: field_output_type
   use element_fields, only: evaluate_element_fields
+  use interface_fields, only: evaluate_interface_fields
   use result_frame, only: result_field_type, named_text_type
   use result_folder, only: result_folder_type
   use restart_state, only: write_restart
@@ -98,11 +99,14 @@ contains
       associate (request => model%histories(h))
         if (request%reaction) names = [names, (column_label(request%label, 'r', i), i=1, model%ndm)]
         if (request%displacement) names = [names, (column_label(request%label, 'u', i), i=1, model%ndm)]
+        if (request%moment) names = [names, [character(label_length) :: request%label//'_m']]
+        if (request%rotation) names = [names, [character(label_length) :: request%label//'_rot']]
         if (request%work) names = [names, [character(label_length) :: 'work']]
         if (request%elastic) names = [names, [character(label_length) :: 'elastic']]
         if (request%dissipated) names = [names, [character(label_length) :: 'dissipated']]
         if (request%penalty) names = [names, [character(label_length) :: 'penalty_energy']]
         if (request%penetration) names = [names, [character(label_length) :: 'penetration']]
+        if (request%balance) names = [names, [character(label_length) :: 'energy_error']]
       end associate
     end do
   end function labels
@@ -123,17 +127,36 @@ contains
           if (request%reaction .or. request%displacement) nodes = nodes_of_set(model, request%set)
           if (request%reaction) values = [values, (sum(eq%f_n(i, nodes)), i=1, model%ndm)]
           if (request%displacement) values = [values, (sum(eq%un(i, nodes))/max(size(nodes), 1), i=1, model%ndm)]
+          if (request%moment) values = [values, end_moment(model, eq, request%end_face)]
+          if (request%rotation) values = [values, eq%un(1, model%end_faces(request%end_face)%rotation)]
           if (request%work) values = [values, eq%energies_n%work]
           if (request%elastic) values = [values, eq%energies_n%elastic]
           if (request%dissipated) values = [values, eq%energies_n%dissipated]
           if (request%penalty) values = [values, eq%energies_n%penalty]
           if (request%penetration) values = [values, eq%energies_n%penetration]
+          if (request%balance) values = [values, eq%energies_n%balance_error()]
         end associate
       end do
     end if
     call self%history%add_row(step, eq%time_n, iterations, cutbacks, eq%active, values)
     if (self%history%failed) call self%note(self%history%message)
   end subroutine add_row
+
+  pure function end_moment(model, eq, number) result(moment)
+    !! The moment that the support of a prescribed rotation, or the load, applies to an end face.
+    type(model_type), intent(in) :: model
+    type(equilibrium_type), intent(in) :: eq
+    integer, intent(in) :: number            !! index into model%end_faces
+    real(wp) :: moment
+
+    associate (column => model%end_faces(number)%rotation)
+      if (model%fixed(1, column)) then
+        moment = eq%f_n(1, column)
+      else
+        moment = eq%fext_n(1, column)
+      end if
+    end associate
+  end function end_moment
 
   pure function wants_fields(self, model, step, time) result(yes)
     !! Whether the deck asks for fields at a step (the last one of a run is written anyway).
@@ -168,52 +191,12 @@ contains
       self%fields_begun = .true.
     end if
     call evaluate_element_fields(model, self%fields%cells, eq%un, eq%un, eq%time_n, 0.0_wp, eq%bulk, fields, failures)
-    call interface_fields(model, eq, points, point_fields)
+    call evaluate_interface_fields(model, eq%interfaces, eq%un, points, point_fields)
     call self%fields%write(self%folder, model%mesh, model%w, step, &
-      merge(real(step, wp), eq%time_n, self%time_is_step), eq%un, fields, points, point_fields)
+      merge(real(step, wp), eq%time_n, self%time_is_step), eq%un(:, 1:model%nn), fields, points, point_fields)
     if (self%fields%failed) call self%note(self%fields%message)
     self%last_field_step = step
   end subroutine write_fields
-
-  subroutine interface_fields(model, eq, points, fields)
-    !! Slave points in their present place, with gap, traction and pairing.
-    type(model_type), intent(in) :: model
-    type(equilibrium_type), intent(in), target :: eq
-    real(wp), allocatable, intent(out) :: points(:, :)
-    type(result_field_type), allocatable, intent(out) :: fields(:)
-    integer, pointer, contiguous :: nodes(:)
-    integer :: i, j, k, n, a
-    character(9), parameter :: names(5) = [character(9) :: 'gap', 'traction', 'active', 'paired', 'interface']
-
-    n = 0
-    do i = 1, size(eq%interfaces)
-      n = n + eq%interfaces(i)%np
-    end do
-    allocate (points(3, n), source=0.0_wp)
-    allocate (fields(size(names)))
-    do k = 1, size(names)
-      fields(k)%name = trim(names(k))
-      allocate (fields(k)%values(1, n))
-    end do
-    k = 0
-    do i = 1, size(eq%interfaces)
-      associate (p => eq%interfaces(i))
-        do j = 1, p%np
-          k = k + 1
-          nodes => p%slave%set%connectivity(p%facet_of(j))
-          do a = 1, size(nodes)
-            points(1:model%ndm, k) = points(1:model%ndm, k) &
-              + p%table(1 + a, j)*(model%x(:, nodes(a)) + eq%un(1:model%ndm, nodes(a)))
-          end do
-          fields(1)%values(1, k) = p%gap(j)
-          fields(2)%values(1, k) = p%traction(j)
-          fields(3)%values(1, k) = merge(1.0_wp, 0.0_wp, p%active(j))
-          fields(4)%values(1, k) = merge(1.0_wp, 0.0_wp, p%facet(j) > 0)
-          fields(5)%values(1, k) = i
-        end do
-      end associate
-    end do
-  end subroutine interface_fields
 
   subroutine write_state(self, eq, control, path, step)
     !! The restart state.

@@ -35,7 +35,7 @@ contains
     type(step_control_type), intent(inout) :: control
     type(model_type), intent(in) :: model
 
-    allocate (control%rate(model%ndf, model%nn), source=0.0_wp)
+    allocate (control%rate(model%ndf, model%columns()), source=0.0_wp)
   end subroutine start_control
 
   subroutine advance(model, eq, settings, control, target_time, clock, report, status)
