@@ -76,6 +76,13 @@ contains
       code = exit_deck
       return
     end if
+    if (run%eq%solver%indefinite .and. &
+      any(program%commands%what == do_backend .and. program%commands%count == backend_cholmod)) then
+      call log%put('error: SOLVer CHOLmod needs a positive definite tangent, but an end face that is free to warp has a '// &
+        'multiplier. Use SOLVer UMFPack or AUTO')
+      code = exit_deck
+      return
+    end if
     call start_control(run%control, model)
     if (restart) then
       call read_restart(results%folder%file('restart.h5'), results%identity, run%resumed_step, run%eq, run%control, &

@@ -214,7 +214,7 @@ contains
   end subroutine read_links
 
   subroutine read_surface_load(command, model, draft, log)
-    !! SLOAd set PRESsure p | FOLLower p | TRACtion t1 t2 [t3] | BODY b1 b2 [b3]  [PROP=n] [GP=n].
+    !! SLOAd set PRESsure p | FOLLower p | TRACtion t1 t2 [t3] | BODY b1 b2 [b3] | MOMEnt m  [PROP=n] [GP=n].
     type(record), intent(in) :: command
     type(model_type), intent(in) :: model
     type(draft_type), intent(inout) :: draft
@@ -228,22 +228,23 @@ contains
     case ('foll'); new%load%kind = 'follower'
     case ('trac'); new%load%kind = 'traction'
     case ('body'); new%load%kind = 'body'
+    case ('mome'); new%load%kind = 'moment'
     case default
       call command%add_error(log, 'unknown load ' // quoted(command%word(3)), &
         known_names([character(8) :: &
-        'PRESsure', 'FOLLower', 'TRACtion', 'BODY'], 'loads'), 3)
+        'PRESsure', 'FOLLower', 'TRACtion', 'BODY', 'MOMEnt'], 'loads'), 3)
       return
     end select
     if (any(new%load%kind == ['traction', 'body    '])) then
       call command%numbers(4, new%load%value(1:model%ndm), log, 'components of the load')
     else
-      call command%number(4, new%load%value(1), log, 'pressure')
+      call command%number(4, new%load%value(1), log, trim(merge('moment  ', 'pressure', new%load%kind == 'moment')))
     end if
     call command%integer_option('prop', new%load%prop, log)
     call command%integer_option('gp', new%load%gp, log)
     if (new%load%gp < 0) call command%add_error(log, 'a negative number of Gauss points', '')
     call command%check_options([character(8) :: 'prop', 'gp', 'pressure', 'follower', 'traction', &
-      'body'], log)
+      'body', 'moment'], log)
     draft%loads = [draft%loads, new]
   end subroutine read_surface_load
 end module condition_commands

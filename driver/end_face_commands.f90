@@ -118,8 +118,13 @@ contains
         model%force_prop(angle, face%rotation) = request%prop
         if (face%warps) model%fixed(multiplier, face%rotation) = .false.
         if (.not. face%warps) model%fixed(model%ndm + 1:, face%translation) = .true.
-        if (log%error_count() > first_error) cycle
+        if (face%set == 0 .or. log%error_count() > first_error) cycle
 
+        if (.not. is_face(model, face%set)) then
+          call log%add_error(request%at, 'ENDFace', 'the surface ' // quoted(request%surface) // &
+            ' is not a face of a body', 'Edges of shells cannot turn as end faces: their slope is not tied to them')
+          cycle
+        end if
         nodes = nodes_of_set(model, face%set)
         do a = 1, size(nodes)
           if (face_of(nodes(a)) > 0) then
@@ -129,6 +134,7 @@ contains
           end if
           face_of(nodes(a)) = k
         end do
+        if (log%error_count() > first_error) cycle
         if (face%warps) then
           if (all(model%fixed(1:model%ndm, nodes))) call log%add_error(request%at, 'ENDFace', &
             'all points of the face are fixed', 'Free them: the face turns by their movement')
@@ -138,6 +144,21 @@ contains
       end associate
     end do
   end subroutine resolve_end_faces
+
+  logical function is_face(model, set)
+    !! Whether all facets of a surface have one parametric direction less than space.
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: set
+    integer :: i, e, dp
+
+    is_face = .true.
+    do i = 1, size(model%sets(set)%items)
+      e = model%sets(set)%items(i)
+      dp = model%mesh%dp(e)
+      if (model%sets(set)%sides(i) > 0) dp = dp - 1
+      is_face = is_face .and. dp == model%ndm - 1
+    end do
+  end function is_face
 
   subroutine widen(model)
     !! Conditions for the columns of new globals: free, without values or forces.

@@ -225,6 +225,7 @@ contains
         else
           load%set = surface_of(model, draft, request%at, 'SLOAd', 'surface', request%set, log)
         end if
+        if (load%set > 0) call check_load(model, load, request%at, request%set, log)
         if (load%prop > 0 &
           .and. .not. any(model%props(:)%number == load%prop)) call log%add_error(request%at, &
           'SLOAd', 'the time function of PROP is not defined', 'Define it by PROPortional')
@@ -232,6 +233,33 @@ contains
       end associate
     end do
   end subroutine resolve_loads
+
+  subroutine check_load(model, load, at, name, log)
+    !! What shells cannot take, and what solids cannot.
+    type(model_type), intent(in) :: model
+    type(surface_load_type), intent(in) :: load
+    type(deck_place), intent(in) :: at
+    character(*), intent(in) :: name               !! of its set
+    type(message_log), intent(inout) :: log
+    logical :: is_edge
+
+    associate (set => model%sets(load%set))
+      if (size(set%items) == 0) return
+      if (load%kind == 'body') then
+        if (any(model%mesh%dp(set%items) < model%ndm)) call log%add_error(at, 'SLOAd', quoted(name) // &
+          ' has shells, which take no force per volume', 'Write TRACtion: force per area of the shell')
+        return
+      end if
+      is_edge = model%ndm == 3 .and. all(model%mesh%dp(set%items) == 2 .and. set%sides > 0)
+      if (load%kind == 'moment' .and. .not. is_edge) then
+        call log%add_error(at, 'SLOAd', quoted(name) // ' is not the edge of a shell', &
+          'A moment acts on a side of a surface patch')
+      else if (is_edge .and. .not. any(load%kind == ['moment  ', 'traction'])) then
+        call log%add_error(at, 'SLOAd', quoted(name) // ' is the edge of a shell, which takes no pressure', &
+          'Write TRACtion (force per length) or MOMEnt (moment per length)')
+      end if
+    end associate
+  end subroutine check_load
 
   subroutine resolve_histories(model, draft, log)
     type(model_type), intent(inout) :: model

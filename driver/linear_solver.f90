@@ -1,7 +1,8 @@
 module linear_solver
   !! Direct solution of A x = b. A symmetric matrix goes to CHOLMOD; where it turns out not to be positive definite, and
   !! where the matrix is unsymmetric, UMFPACK takes it. The failed Cholesky is tried again at each factorisation: it
-  !! costs a part of the LU that follows, and nothing has to be remembered across a restart.
+  !! costs a part of the LU that follows, and nothing has to be remembered across a restart. It is left out where the
+  !! matrix is known to be `indefinite`.
   !!
   !! The fill-reducing order is computed on the graph of the node blocks, which is smaller than the matrix by the square
   !! of the components per node, and serves both solvers. Orders and symbolic factors are kept while the epoch of the

@@ -1,6 +1,6 @@
 module load_assembly
-  !! The loads of a model: nodal forces, dead tractions and pressures, body forces (integrated once) and follower
-  !! pressures (integrated in every assembly, with their unsymmetric tangent). Each scales with its time function.
+  !! The loads of a model: nodal forces, dead tractions and pressures, body forces (integrated once), follower
+  !! pressures and moments on edges (integrated in every assembly, with their unsymmetric tangent). Each scales with its time function.
   use kinds, only: wp
   use status_codes, only: ok
   use model_data, only: model_type, surface_load_type
@@ -10,6 +10,7 @@ module load_assembly
   use rational_basis, only: shape_functions
   use geometry_map, only: physical_gradient
   use surface_load, only: dead_traction, dead_pressure, follower_pressure, body_force
+  use edge_moments, only: edge_moment_type, prepare_edge_moment, add_edge_moment
   use bulk_elements, only: add_moved_force
   use equation_system, only: equation_system_type
   implicit none (type, external)
@@ -31,6 +32,7 @@ module load_assembly
   type :: load_points_type
     type(dead_load), allocatable :: dead(:)
     type(follower_load), allocatable :: follower(:)
+    type(edge_moment_type), allocatable :: moments(:)
   end type load_points_type
 
 contains
@@ -40,7 +42,7 @@ contains
     logical :: symmetric
 
     symmetric = .true.
-    if (allocated(model%loads)) symmetric = .not. any(model%loads%kind == 'follower')
+    if (allocated(model%loads)) symmetric = .not. any(model%loads%kind == 'follower' .or. model%loads%kind == 'moment')
   end function loads_are_symmetric
 
   subroutine prepare_loads(model, loads)
@@ -49,8 +51,9 @@ contains
     type(load_points_type), intent(out) :: loads
     integer :: l, n
     type(facet_surface) :: surface
+    type(edge_moment_type) :: moment
 
-    allocate (loads%dead(0), loads%follower(0))
+    allocate (loads%dead(0), loads%follower(0), loads%moments(0))
     n = 0
     if (allocated(model%loads)) n = size(model%loads)
     do l = 1, n
@@ -59,6 +62,9 @@ contains
         case ('follower')
           call build_facets(model, load%set, surface)
           loads%follower = [loads%follower, follower_load(surface, load%value(1), load%prop, load%gp)]
+        case ('moment')
+          call prepare_edge_moment(model, load, moment)
+          loads%moments = [loads%moments, moment]
         case ('body')
           loads%dead = [loads%dead, dead_load(body_vector(model, load), load%prop)]
         case default
@@ -139,7 +145,7 @@ contains
     integer, pointer, contiguous :: nodes(:)
     real(wp), allocatable :: xi(:, :)
     real(wp) :: d2shp(0, 0)
-    integer :: dp, g, status, rule(model%ndm - 1)
+    integer :: dp, g, status, rule(surface%set%dp(f))
 
     dp = surface%set%dp(f)
     nodes => surface%set%connectivity(f)
@@ -208,6 +214,17 @@ contains
         deallocate (fe, ke)
       end do
     end do
+    do l = 1, size(loads%moments)
+      factor = prescribed_factor(model%props, loads%moments(l)%prop, time)
+      f = f + fext
+      if (want_tangent) then
+        call add_edge_moment(model, loads%moments(l), factor, u, fext, status, du, moves, system, f_moved)
+      else
+        call add_edge_moment(model, loads%moments(l), factor, u, fext, status)
+      end if
+      f = f - fext
+      if (status /= ok) return
+    end do
   end subroutine assemble_loads
 
   subroutine load_rates(model, loads, time, u, rate)
@@ -220,7 +237,7 @@ contains
     integer, pointer, contiguous :: nodes(:)
     real(wp), allocatable :: shp(:, :), dshp(:, :, :), wt(:), fe(:, :), ke(:, :, :, :)
     real(wp) :: factor
-    integer :: a, i, l, k, g
+    integer :: a, i, l, k, g, status
 
     rate = 0
     if (allocated(model%force)) then
@@ -247,6 +264,10 @@ contains
         end do
         deallocate (fe, ke)
       end do
+    end do
+    do l = 1, size(loads%moments)
+      factor = prescribed_rate(model%props, loads%moments(l)%prop, time)
+      call add_edge_moment(model, loads%moments(l), factor, u, rate, status)
     end do
   end subroutine load_rates
 end module load_assembly

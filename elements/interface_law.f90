@@ -22,7 +22,7 @@ module interface_law
   implicit none (type, external)
   private
   public :: gap_law, gap_response, contact_law, cohesive_law, cohesive_law_of_stiffness
-  public :: interface_response, interface_is_active, dissipated_energy
+  public :: interface_response, interface_is_active, dissipated_energy, interface_damage, has_cohesion
 
   type :: gap_law
     real(wp) :: penalty = 0             !! eps, stiffness in compression [stress/length]
@@ -159,10 +159,24 @@ contains
     end if
   end function dissipated_energy
 
+  elemental function interface_damage(law, opening) result(damage)
+    !! Share of the initial stiffness that is lost, p(h)/h = (1 - damage) p_max/g_max: 0 intact, 1 spent.
+    type(gap_law), intent(in) :: law
+    real(wp), intent(in) :: opening     !! h [length]
+    real(wp) :: damage
+
+    damage = 0
+    if (.not. has_cohesion(law, opening)) then
+      damage = 1
+    else if (opening > law%g_max) then
+      damage = law%g_u * (opening - law%g_max) / (opening * (law%g_u - law%g_max))
+    end if
+  end function interface_damage
+
   elemental function has_cohesion(law, opening) result(bonded)
     type(gap_law), intent(in) :: law
-    real(wp), intent(in) :: opening
-    logical :: bonded
+    real(wp), intent(in) :: opening     !! h [length]
+    logical :: bonded                   !! cohesion is left
 
     bonded = law%p_max > 0 .and. opening < law%g_u
   end function has_cohesion

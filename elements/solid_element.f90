@@ -45,6 +45,7 @@ contains
 
     self%ndm = ndm
     self%ndf = ndm
+    self%dp = ndm
     self%symmetric = .true.
     kind = 0
     mode = merge(three_dimensional, plane_strain, ndm == 3)

@@ -8,6 +8,7 @@ module surface_load
   !!   follower pressure   f_a = + sum_g R_a p N w_g           current normal and area
   !!   body force          f_a = - sum_g R_a b V_g             per reference volume
   !!
+  !! A traction on a curve in space (the edge of a shell) is a force per length, |N_0| its |tau|.
   !! A positive pressure pushes against the surface. As everywhere, f is an internal force, minus
   !! the load, and K = df/du. Only follower pressure has one,
   !!
@@ -25,17 +26,21 @@ contains
   pure subroutine dead_traction(xe, shp, dshp, wt, traction, fe)
     real(wp), intent(in) :: xe(:,:)         !! reference control points (ndm,nen) [length]
     real(wp), intent(in) :: shp(:,:)        !! R at the points of the facet (nen,ng)
-    real(wp), intent(in) :: dshp(:,:,:)     !! their parametric derivatives (ndm-1,nen,ng)
+    real(wp), intent(in) :: dshp(:,:,:)     !! their parametric derivatives (dp,nen,ng)
     real(wp), intent(in) :: wt(:)           !! weights of the rule on the parent facet (ng)
-    real(wp), intent(in) :: traction(:,:)   !! force per reference area (ndm,ng) [stress]
+    real(wp), intent(in) :: traction(:,:)   !! force per reference area or length (ndm,ng)
     real(wp), intent(out) :: fe(:,:)        !! minus the load (ndm,nen) [force]
-    real(wp) :: tau(size(xe,1),size(xe,1)-1), area(size(xe,1))
+    real(wp) :: tau(size(xe,1),size(dshp,1)), area(size(xe,1))
     integer :: g
 
     fe = 0
     do g = 1, size(wt)
       call tangents(xe, dshp(:,:,g), tau)
-      call area_vector(tau, area)
+      if (size(tau, 2) == size(tau, 1) - 1) then
+        call area_vector(tau, area)
+      else
+        area = tau(:,1)
+      end if
       call add_point(shp(:,g), -traction(:,g)*(norm2(area)*wt(g)), fe)
     end do
   end subroutine dead_traction
@@ -120,8 +125,8 @@ contains
 
   pure subroutine tangents(x, dshp, tau)
     real(wp), intent(in) :: x(:,:)          !! control points (ndm,nen) [length]
-    real(wp), intent(in) :: dshp(:,:)       !! parametric derivatives (ndm-1,nen)
-    real(wp), intent(out) :: tau(:,:)       !! covariant tangents (ndm,ndm-1) [length]
+    real(wp), intent(in) :: dshp(:,:)       !! parametric derivatives (dp,nen)
+    real(wp), intent(out) :: tau(:,:)       !! covariant tangents (ndm,dp) [length]
     integer :: a, k
 
     tau = 0

@@ -28,9 +28,11 @@ module user_element
 
   type :: master_facet
     !! The other side of an interface element: the facet that a slave point is paired with.
-    integer :: nen = 0                                     !! functions on the facet (0: unpaired)
+    integer :: nen = 0                                     !! functions on the facet (0: unpaired: no force, but the
+                                                           !! energy that was dissipated is told)
     integer :: degree(2) = 0                               !! Bernstein degrees
-    real(wp) :: xi(2) = 0                                  !! projection of the slave point, in [0,1]
+    real(wp) :: xi(2) = 0                                  !! projection of the slave point, in [0,1]; outside it on
+                                                           !! the facet's smooth extension beyond the surface's edge
     logical :: held(2) = .false.                           !! xi rests on a kink of the surface in this direction
     real(wp) :: side = 1                                   !! +1 or -1: the outward normal is side*n
     real(wp), pointer, contiguous :: we(:) => null()       !! weights (nen)
@@ -77,11 +79,15 @@ module user_element
     !! An element formulation together with its law data; one instance serves all elements of a material.
     integer :: ndm = 0                   !! space dimension
     integer :: ndf = 0                   !! dofs per function
+    integer :: dp = 0                    !! parametric dimension that it is made for, 0: any
+    integer :: smoothness = 0            !! derivatives of the functions that must be continuous between elements
     logical :: symmetric = .true.        !! only blocks a >= b of ke are filled
   contains
     procedure(define_interface), deferred :: define
     procedure :: sizes => no_sizes
     procedure(evaluate_interface), deferred :: evaluate
+    procedure :: begin_history => zero_history
+    procedure :: is_bonded => never_bonded
     procedure :: output_names => no_output_names
     procedure :: output => no_output
   end type element_type
@@ -123,6 +129,26 @@ contains
     ntable = 0*(self%ndf + geo%nen)
     nhist = 0
   end subroutine no_sizes
+
+  pure subroutine zero_history(self, bonded, hist)
+    !! History before the first step. Default: zero.
+    class(element_type), intent(in) :: self
+    logical, intent(in) :: bonded                          !! .false.: an interface point that is cracked from the start
+    real(wp), intent(out) :: hist(:)
+
+    hist = 0
+    if (self%ndf < 0 .or. bonded) return  ! the default needs nothing of them
+  end subroutine zero_history
+
+  pure function never_bonded(self, hist) result(bonded)
+    !! Whether an interface point with this history can still pull: it keeps its master facet beyond the surface's edge.
+    !! Default: never.
+    class(element_type), intent(in) :: self
+    real(wp), intent(in) :: hist(:)
+    logical :: bonded
+
+    bonded = self%ndf < 0 .and. size(hist) < 0
+  end function never_bonded
 
   pure subroutine no_output_names(self, names)
     class(element_type), intent(in) :: self

@@ -8,6 +8,7 @@ module status_codes
     bad_extraction, node_out_of_range, not_finite
   public :: stale_pattern, singular_matrix, not_positive_definite, out_of_memory
   public :: bad_t_mesh, not_suitable, edges_differ
+  public :: bond_lost, nothing_bonded
   public :: status_text
 
   integer, parameter :: ok = 0
@@ -31,6 +32,8 @@ module status_codes
   integer, parameter :: bad_t_mesh = 18  !! degrees or lines that a T-mesh does not support
   integer, parameter :: not_suitable = 19  !! the extensions of two T-junctions cross
   integer, parameter :: edges_differ = 20  !! two edges to be merged are not the same curve
+  integer, parameter :: bond_lost = 21  !! a bonded point has left the master's edge by more than a facet
+  integer, parameter :: nothing_bonded = 22  !! no Gauss point lies in the bonded part of an interface
 
 contains
 
@@ -60,6 +63,10 @@ contains
     case (bad_t_mesh); text = 'the T-mesh does not support these degrees, lines or splits'
     case (not_suitable); text = 'the T-mesh is not analysis-suitable: the extensions of two T-junctions cross'
     case (edges_differ); text = 'the edges to be merged are not the same curve'
+    case (bond_lost); text = 'a bonded point has slid beyond the edge of the master surface by more than the length of a '// &
+      'facet. Let the master surface reach farther, or bond less of the slave surface'
+    case (nothing_bonded); text = 'no Gauss point of it is bonded: none lies in a BONDed part, outside every UNBOnded '// &
+      'part, opposite to the master and nearer to it than the opening at which it is spent'
     case default;               text = 'unknown status'
     end select
   end function status_text

@@ -53,14 +53,14 @@ contains
       search%tree%nnodes = 0
       facet(1) = 0
       held = .false.
-      call pair_point(search, surface, w, xs(:, 1), facet(1), xi(:, 1), held, forced)
+      call pair_point(search, surface, w, xs(:, 1), .false., facet(1), xi(:, 1), held, forced)
     end do
     call put('search', row, 'tree, a facet [us]', 1.0e6_wp*watch%best/nf)
     call watch%begin()
     do while (watch%goes_on())
       facet = 0
       do i = 1, points
-        call pair_point(search, surface, w, xs(:, i), facet(i), xi(:, i), held, forced)
+        call pair_point(search, surface, w, xs(:, i), .false., facet(i), xi(:, i), held, forced)
       end do
     end do
     if (any(facet == 0)) error stop 'search_benchmarks: a point without a pair'
@@ -71,7 +71,7 @@ contains
       xs(1, :) = xs(1, :) + merge(0.05_wp, -0.05_wp, mod(watch%calls, 2_i8) == 0)
       call move_master(search, x)
       do i = 1, points
-        call pair_point(search, surface, w, xs(:, i), facet(i), xi(:, i), held, forced)
+        call pair_point(search, surface, w, xs(:, i), .false., facet(i), xi(:, i), held, forced)
       end do
     end do
     if (any(facet == 0)) error stop 'search_benchmarks: a point lost its pair'
