@@ -27,7 +27,8 @@ module path_control
   integer, parameter :: by_time = 2, by_dissipation = 3, by_arc = 4
 
   real(wp), parameter :: dissipating = 0.1_wp   !! share of the energy from which dissipation controls
-  real(wp), parameter :: imbalance = 0.2_wp     !! share of the energy that a smooth increment cannot miss
+  real(wp), parameter :: imbalance = 0.2_wp     !! share of an increment's energy that a smooth one cannot miss
+  real(wp), parameter :: negligible = 1.0e-3_wp !! share of all energy so far that may be missed, or not be dissipated
   integer, parameter :: most_halvings = 4       !! of an increment before the next kind of control is tried
 
   type :: path_control_type
@@ -47,6 +48,7 @@ module path_control
     integer :: negative = inertia_unknown   !! negative pivots
     integer :: limit_points = 0             !! passed so far
     logical :: passed_limit = .false.       !! in the last increment
+    logical :: nothing_left = .false.       !! in this increment, by dissipation
     logical :: unstable = .false.           !! the last tangent has another inertia than the first
     integer :: first_sign = 0, first_negative = inertia_unknown
     real(wp), allocatable :: along(:, :)    !! last increment of the control values
@@ -83,6 +85,7 @@ contains
     logical :: smooth
 
     halvings = 0
+    path%nothing_left = .false.
     if (.not. path%time_step > 0) path%time_step = path%most_time
     path%time_step = min(path%time_step, path%most_time)
     do
@@ -100,7 +103,7 @@ contains
       report%cutbacks = report%cutbacks + 1
       halvings = halvings + 1
       call shorten(path)
-      if (halvings < most_halvings) cycle
+      if (halvings < most_halvings .and. .not. hardly_dissipates(path, eq)) cycle
       halvings = 0
       if (.not. other_control(path, eq)) return
     end do
@@ -126,7 +129,7 @@ contains
     constraint%kind = merge(path_arc, path_dissipation, path%mode == by_arc)
     constraint%length = merge(path%arc, path%dissipation, path%mode == by_arc)
     constraint%most_time = path%most_time
-    constraint%forward_time = path%time_step
+    constraint%forward_time = path%most_time
     if (allocated(path%along)) then
       constraint%along = path%along
       constraint%along_time = path%along_time
@@ -145,11 +148,26 @@ contains
 
     call increments(eq, work, stored, dissipated)
     scale = max(abs(work), abs(stored), abs(dissipated))
-    smooth = abs(work - stored - dissipated) <= imbalance*scale
+    smooth = abs(work - stored - dissipated) <= max(imbalance*scale, negligible*energy_so_far(eq))
     if (path%mode == by_arc .and. allocated(path%along) .and. abs(dissipated) <= dissipating*scale) &
       smooth = smooth .and. sum((eq%u(1:model%ndm, 1:model%nn) - eq%un(1:model%ndm, 1:model%nn)) &
                                 *path%along(1:model%ndm, 1:model%nn)) > 0
   end subroutine judge
+
+  pure function hardly_dissipates(path, eq) result(yes)
+    type(path_control_type), intent(in) :: path
+    type(equilibrium_type), intent(in) :: eq
+    logical :: yes
+
+    yes = path%mode == by_dissipation .and. path%dissipation <= negligible*energy_so_far(eq)
+  end function hardly_dissipates
+
+  pure function energy_so_far(eq) result(energy)
+    type(equilibrium_type), intent(in) :: eq
+    real(wp) :: energy
+
+    energy = max(abs(eq%energies_n%work), abs(eq%energies_n%elastic), eq%energies_n%dissipated)
+  end function energy_so_far
 
   subroutine increments(eq, work, stored, dissipated)
     !! Of the energies since the committed state.
@@ -172,17 +190,23 @@ contains
   end subroutine shorten
 
   function other_control(path, eq) result(found)
-    !! The next kind of control to try for this increment: dissipation after time, arc length last.
+    !! The next kind of control to try for this increment: dissipation after time, and after it time again if what is
+    !! left to dissipate is negligible; arc length last.
     type(path_control_type), intent(inout) :: path
     type(equilibrium_type), intent(in) :: eq
     logical :: found
 
     found = path%asked == path_auto .and. path%mode /= by_arc
     if (.not. found) return
-    if (path%mode == by_time .and. size(eq%interfaces) > 0) then
+    if (path%mode == by_time .and. size(eq%interfaces) > 0 .and. .not. path%nothing_left) then
       path%mode = by_dissipation
       path%dissipation = 1.0e-2_wp*max(eq%energies_n%elastic, eq%energies_n%dissipated)
       if (path%dissipation > 0) return
+    else if (hardly_dissipates(path, eq)) then
+      path%mode = by_time
+      path%time_step = path%most_time
+      path%nothing_left = .true.
+      return
     end if
     path%mode = by_arc
     found = allocated(path%along)

@@ -116,6 +116,11 @@ contains
       if (k == 1 .and. constraint%kind == path_arc) then
         dt = first_arc(model, eq, constraint, dq(:, 2), rate)
       else
+        if (.not. any(abs(gradient) > 0) .and. eq%energies%dissipated > eq%energies_n%dissipated) then
+          status = no_convergence
+          report%fault = 'nothing is left to dissipate'
+          exit
+        end if
         call eq%system%map%reduce(gradient, c)
         ct = sum(gradient*rate)
         slope = ct + dot_product(c, dq(:, 2))
