@@ -68,7 +68,8 @@ build() {
     fi
     fingerprint "$folder" >"$stamp"
   fi
-  if ! cmake --build "$folder" --target "$@" >"$log" 2>&1; then
+  # Twice: the first build after a module has moved to another layer ends early, looking for it in its old place.
+  if ! cmake --build "$folder" --target "$@" >"$log" 2>&1 && ! cmake --build "$folder" --target "$@" >"$log" 2>&1; then
     # Of ninja's output only what belongs to the failed steps.
     awk '/^FAILED/ { on = 1 } /^\[[0-9]+\/[0-9]+\]/ { on = 0 } on { print; some = 1 } END { exit !some }' "$log" >&2 ||
       cat "$log" >&2

@@ -11,11 +11,12 @@ module data_lines
   private
   public :: next_line, name_or_number, node_or_set, as_property, mesh_command, mesh_commands_known
 
-  character(16), parameter :: mesh_commands_known(26) = [character(16) :: 'COORdinates', &
+  character(16), parameter :: mesh_commands_known(28) = [character(16) :: 'COORdinates', &
     'ELEMents', 'OPERator', &
-    'BEZIer', 'PATCh', 'MERGe', 'T-SPline', 'TIE', 'SET', 'MATErial', 'BOUNdary', 'DISPlacement', 'FORCe', &
+    'BEZIer', 'PATCh', 'MERGe', 'T-SPline', 'QUADmesh', 'TIE', 'SET', 'MATErial', 'BOUNdary', 'DISPlacement', 'FORCe', &
     'FPROportional', &
-    'PROPortional', 'SLOAd', 'LINK', 'ENDFace', 'CLAMp', 'SYMMetry', 'CONTact', 'HISTory', 'OUTPut', 'RESTart', 'EXPOrt', 'END']
+    'PROPortional', 'SLOAd', 'LINK', 'ENDFace', 'CLAMp', 'SYMMetry', 'JOINt', &
+    'CONTact', 'HISTory', 'OUTPut', 'RESTart', 'EXPOrt', 'END']
 
 contains
 
@@ -132,7 +133,7 @@ contains
     property%place = in_place(rec%at)
     allocate (property%words(0), property%values(0))
     do i = first, rec%count
-      if (i == first .and. is_plain_name(rec%word(i))) then
+      if (rec%is_named(i) .or. (i == first .and. is_plain_name(rec%word(i)))) then
         property%words = [property%words, rec%key(i)]
         cycle
       end if

@@ -1,6 +1,5 @@
 module deck_record
   !! One record of a deck: a logical line split into items, with access by position and by keyword.
-  !!
   !! Items are separated by blanks, one comma or one `=`. Two commas in a row (or a comma or `=`
   !! without anything before it) hold an empty item, which reads as 0 or as a blank name; one comma
   !! at the end holds nothing. Blanks, commas and `=` inside quotes or parentheses do not separate,
@@ -58,7 +57,7 @@ module deck_record
     procedure :: split
     procedure :: word
     procedure :: key
-    procedure :: is_quoted
+    procedure :: is_quoted, is_named
     procedure :: place_of
     procedure :: rest
     procedure :: number => record_number
@@ -220,6 +219,13 @@ contains
     is_quoted = .false.
     if (i >= 1 .and. i <= self%count) is_quoted = self%in_quotes(i)
   end function is_quoted
+
+  pure logical function is_named(self, i)
+    class(record), intent(in) :: self
+    integer, intent(in) :: i                !! of an item: an = follows it
+
+    is_named = self%named(i)
+  end function is_named
 
   pure function place_of(self, i) result(at)
     class(record), intent(in) :: self

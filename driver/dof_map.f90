@@ -43,6 +43,7 @@ module dof_map
     procedure :: prescribed_increment
     procedure :: rates
     procedure :: add_reactions
+    procedure :: support_forces
     procedure :: reduce
     procedure :: add_increment
     procedure :: spread_increment
@@ -331,6 +332,24 @@ contains
       end associate
     end do
   end subroutine add_reactions
+
+  pure subroutine support_forces(self, f, supports)
+    !! What supports apply: forces at linked values act on those that these depend on.
+    class(dof_map_type), intent(in) :: self
+    real(wp), intent(in) :: f(:, :)            !! nodal forces (ndf,nn)
+    real(wp), intent(out) :: supports(:, :)    !! (ndf,nn)
+    integer :: l, m
+
+    supports = f
+    do l = 1, self%linear
+      associate (d => self%links(l))
+        supports(d%comp, d%node) = supports(d%comp, d%node) - f(d%comp, d%node)
+        do m = 1, size(d%nodes)
+          supports(d%comps(m), d%nodes(m)) = supports(d%comps(m), d%nodes(m)) + d%coefs(m)*f(d%comp, d%node)
+        end do
+      end associate
+    end do
+  end subroutine support_forces
 
   subroutine reduce(self, f, r)
     !! Residual of the equations from nodal forces: r = (du/dq)^T f.

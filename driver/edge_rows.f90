@@ -23,7 +23,7 @@ module edge_rows
     integer, allocatable :: first(:), second(:)   !! nodes of both rows, increasing
     real(wp), allocatable :: slope(:, :)          !! R_a,nu at the points (np,first and second) [1/length]
     real(wp), allocatable :: x(:, :)              !! points (3,np) [length]
-    real(wp), allocatable :: nu(:, :)             !! outward conormals (3,np)
+    real(wp), allocatable :: nu(:, :), nrm(:, :)  !! outward conormals and normals (3,np)
     real(wp), allocatable :: length(:)            !! of the points (np)
   end type edge_type
 
@@ -95,7 +95,7 @@ contains
       np = np + maxval(model%mesh%degree(1:2, model%sets(set)%items(i))) + 2
     end do
     allocate (edge%slope(np, size(edge%first) + size(edge%second)), source=0.0_wp)
-    allocate (edge%x(3, np), edge%nu(3, np), edge%length(np))
+    allocate (edge%x(3, np), edge%nu(3, np), edge%nrm(3, np), edge%length(np))
     np = 0
     status = ok
     do i = 1, size(model%sets(set)%items)
@@ -111,6 +111,7 @@ contains
         np = np + 1
         edge%x(:, np) = point%x
         edge%nu(:, np) = point%nu
+        edge%nrm(:, np) = point%nrm
         edge%length(np) = norm2(point%tau)*w(g)
         do a = 1, size(ix)
           if (column(ix(a)) > 0) edge%slope(np, column(ix(a))) = point%dnu(a)

@@ -8,7 +8,9 @@ module equilibrium
   use end_face_forces, only: assemble_end_faces
   use bulk_elements, only: bulk_type, prepare_bulk, assemble_bulk, commit_bulk, roll_back_bulk
   use interface_points, only: interface_points_type, prepare_interface, pair_interface, assemble_interface, &
-    commit_interface, roll_back_interface, pair_lists, pairs_covered
+    commit_interface, roll_back_interface
+  use interface_pattern, only: pair_lists, pairs_covered
+  use joint_lines, only: joint_line, prepare_joints, assemble_joints, joint_lists
   use load_assembly, only: load_points_type, prepare_loads, assemble_loads, loads_are_symmetric
   use equation_system, only: equation_system_type
   use linear_solver, only: linear_solver_type
@@ -34,6 +36,7 @@ module equilibrium
     type(linear_solver_type) :: solver
     type(bulk_type) :: bulk
     type(load_points_type) :: loads
+    type(joint_line), allocatable :: joints(:)
     type(interface_points_type), allocatable :: interfaces(:)
     real(wp), allocatable :: u(:, :), un(:, :)     !! control values now; committed (ndf,nn)
     real(wp), allocatable :: f(:, :)               !! internal - external force of every dof: the reactions
@@ -71,6 +74,11 @@ contains
       return
     end if
     call prepare_loads(model, eq%loads)
+    call prepare_joints(model, eq%joints, status, place)
+    if (status /= ok) then
+      eq%fault = 'a joint of '//place_text(model, place)//': '//status_text(status)
+      return
+    end if
     n = 0
     if (allocated(model%interfaces)) n = size(model%interfaces)
     allocate (eq%interfaces(n))
@@ -123,6 +131,7 @@ contains
     do i = 1, size(eq%interfaces)
       call pair_lists(eq%interfaces(i), ptr, nodes)
     end do
+    call joint_lists(eq%joints, ptr, nodes)
     call eq%system%rebuild(model, ptr, nodes, status)
     call clock%stop(phase_pattern)
     if (status /= ok) then
@@ -183,9 +192,11 @@ contains
     call clock%start(phase_elements)
     call assemble_bulk(model, eq%bulk, task, eq%u, eq%un, du, moves, eq%time, dt, eq%system, eq%f, eq%f_moved, stored, &
                        dissipated, status, place)
+    if (status == ok) call assemble_joints(eq%joints, task, eq%u, du, moves, eq%system, eq%f, eq%f_moved, stored, status)
     call clock%stop(phase_elements)
     if (status /= ok) then
-      eq%fault = place_text(model, place)//': '//status_text(status)
+      eq%fault = 'a joint of shells: '//status_text(status)
+      if (place > 0) eq%fault = place_text(model, place)//': '//status_text(status)
       return
     end if
 

@@ -1,7 +1,7 @@
 module interface_commands
   !! CONTact: a pair of surfaces; what happens between them is law data of an interface element.
   !!
-  !!     CONTact name SLAVe=surface MASTer=surface PENAlty=e [GP=n] [SIDE=-1] [REACh=r]
+  !!     CONTact name SLAVe=surface MASTer=surface PENAlty=e [GP=n] [SIDE=-1] [REACh=r] [THICkness=AUTO|d]
   !!       COHEsive PMAX=p GIC=G GMAX=g | STIFfness=K        cohesion
   !!       REVErsible                                        unloading follows the envelope back
   !!       BONDed   surface | BOX x1 x2 y1 y2 [z1 z2]        part that is bonded from the start (default: everything)
@@ -52,10 +52,12 @@ contains
       penalty = -1
       call command%number_option('penalty', penalty, log)
       call command%integer_option('gp', new%gp, log)
+      new%side = 0
       call command%integer_option('side', new%side, log)
       call command%number_option('reach', new%reach, log)
       call command%check_options([character(7) :: 'slave', 'master', 'penalty', 'gp', 'side', &
-        'reach'], log)
+        'reach', 'thick'], log)
+      call read_offset(command, new%offset, log)
       if (.not. command%has('penalty')) then
         call command%add_error(log, 'the penalty is missing', &
           'Write PENAlty=e, a stiffness per area: pressure = e*depth')
@@ -64,7 +66,7 @@ contains
       end if
       if (new%gp < 1) call command%add_error(log, 'at least one Gauss point is needed', &
         'Write GP=2', command%find('gp'))
-      if (abs(new%side) /= 1) call command%add_error(log, 'the side of a master is 1 or -1', '', &
+      if (command%has('side') .and. abs(new%side) /= 1) call command%add_error(log, 'the side of a master is 1 or -1', '', &
         command%find('side'))
       if (new%reach < 0) call command%add_error(log, 'the reach of the search is a length', '', &
         command%find('reach'))
@@ -85,6 +87,29 @@ contains
     call move_alloc(element, model%interfaces(n + 1)%element)
     call note_surfaces(command, draft, log)
   end subroutine read_contact
+
+  subroutine read_offset(command, offset, log)
+    !! THICkness: the gap is that of the faces of shells, not that of their mid-surfaces.
+    type(record), intent(in) :: command
+    real(wp), intent(out) :: offset              !! [length]; negative: to be taken from the materials
+    type(message_log), intent(inout) :: log
+    integer :: i
+
+    offset = 0
+    i = command%find('thickness')
+    if (i > 0) then
+      if (command%key(i) == 'auto') then
+        offset = -1
+        return
+      end if
+    end if
+    call command%number_option('thickness', offset, log)
+    if (offset < 0) then
+      call command%add_error(log, 'the distance of mid-surfaces whose shells touch cannot be negative', &
+        'Write THICkness=AUTO to take it from the materials', command%find('thickness'))
+      offset = 0
+    end if
+  end subroutine read_offset
 
   subroutine read_law(deck, ndm, properties, places, regions, log)
     !! The lines after a CONTact record: law data for the element, parts for the interface.
@@ -152,6 +177,7 @@ contains
     to%master = from%master
     to%gp = from%gp
     to%side = from%side
+    to%offset = from%offset
     to%reach = from%reach
     call move_alloc(from%regions, to%regions)
     call move_alloc(from%element, to%element)
@@ -174,9 +200,64 @@ contains
           log%add_error(request%at, 'CONTact', 'slave and master are the same surface', &
           'Contact of a surface with itself needs two parts of it')
       end associate
+      call check_surface(model, draft%interfaces(i)%at, 'slave', model%interfaces(i)%slave, log)
+      call check_surface(model, draft%interfaces(i)%at, 'master', model%interfaces(i)%master, log)
       call resolve_regions(model, i, log)
+      if (model%interfaces(i)%offset < 0) call take_offset(model, draft%interfaces(i)%at, model%interfaces(i), log)
     end do
   end subroutine resolve_interfaces
+
+  subroutine check_surface(model, at, role, set, log)
+    !! Not the edge of a shell.
+    type(model_type), intent(in) :: model
+    type(deck_place), intent(in) :: at
+    character(*), intent(in) :: role             !! slave, master
+    integer, intent(in) :: set                   !! index into sets; 0: an error of its own
+    type(message_log), intent(inout) :: log
+
+    if (set == 0) return
+    associate (items => model%sets(set)%items, sides => model%sets(set)%sides)
+      if (any(sides > 0 .and. model%mesh%dp(items) < model%ndm)) call log%add_error(at, 'CONTact', 'the ' // role // &
+        ' surface ' // quoted(model%sets(set)%name) // ' has edges of shells', &
+        'Contact is between surfaces: write the name of the patch')
+    end associate
+  end subroutine check_surface
+
+  subroutine take_offset(model, at, it, log)
+    !! Half the thicknesses of both shells.
+    type(model_type), intent(in) :: model
+    type(deck_place), intent(in) :: at
+    type(interface_type), intent(inout) :: it
+    type(message_log), intent(inout) :: log
+    real(wp) :: least, most
+    integer :: sets(2), k, e
+
+    sets = [it%slave, it%master]
+    it%offset = 0
+    if (any(sets == 0)) return
+    do k = 1, 2
+      associate (set => model%sets(sets(k)))
+        least = huge(least)
+        most = 0
+        do e = 1, size(set%items)
+          if (model%material_of(set%items(e)) == 0) return       ! an error of its own
+          associate (material => model%materials(model%material_of(set%items(e))))
+            if (.not. allocated(material%element)) return
+            least = min(least, material%element%shell_thickness())
+            most = max(most, material%element%shell_thickness())
+          end associate
+        end do
+        if (size(set%items) > 0 .and. least < most) then
+          call log%add_error(at, 'CONTact', 'the elements of ' // quoted(set%name) // ' are not of one thickness', &
+            'Write THICkness=d, the distance of the mid-surfaces where the shells touch')
+          return
+        end if
+        it%offset = it%offset + most/2
+      end associate
+    end do
+    if (.not. it%offset > 0) call log%add_error(at, 'CONTact', 'neither surface is a shell, so there is no thickness', &
+      'Leave out THICkness')
+  end subroutine take_offset
 
   integer function surface_of(model, draft, at, command, what, name, log) result(index)
     !! The surface of this name, 0 after an error.

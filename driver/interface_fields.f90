@@ -44,7 +44,7 @@ contains
       allocate (fields(k)%values(1, n), source=0.0_wp)
     end do
 
-    x = model%x + u(1:model%ndm, :)
+    x = model%x + u(1:model%ndm, 1:model%nn)
     k = 0
     do i = 1, size(interfaces)
       call model%interfaces(i)%element%output_names(own)

@@ -6,12 +6,17 @@ module interface_points
   !! history) and whose projection leaves the master's edge keeps its facet's smooth extension, until it is spent; then,
   !! and without cohesion, it is unpaired beyond the edge. What an unpaired point has dissipated stays in the sum.
   !!
+  !! The sign of a master's normal is that of the deck; where it has none, solids have their outside, and a shell's normal
+  !! points to where the slave is at the start.
+  !!
   !! Bonded from the start are the points that the deck bonds, if in the reference position they have a partner on the
   !! master and are not already open by as much as spends them.
   use kinds, only: wp
-  use status_codes, only: ok, bond_lost, nothing_bonded
+  use status_codes, only: ok, bond_lost, nothing_bonded, side_unknown
   use model_data, only: model_type
   use gauss_rules, only: gauss_legendre, tensor_rule
+  use rational_basis, only: shape_functions
+  use surface_frame, only: tangent_frame_at
   use facets, only: facet_surface, build_facets
   use contact_search, only: master_search, start_search, move_master, pair_point
   use equation_system, only: equation_system_type
@@ -22,9 +27,7 @@ module interface_points
   implicit none (type, external)
   private
   public :: interface_points_type, prepare_interface, pair_interface, assemble_interface, commit_interface, &
-    add_dissipation_gradient, roll_back_interface, place_of_slave, pair_lists, pairs_covered, forget_search
-
-  integer, parameter :: margin = 2   !! facets around the present pair that the matrix pattern has room for
+    add_dissipation_gradient, roll_back_interface, place_of_slave, forget_search
 
   type :: interface_points_type
     type(facet_surface) :: slave, master
@@ -133,15 +136,79 @@ contains
         end do
       end do
       reach = it%reach
-      if (.not. reach > 0) reach = 2*max(largest_facet(model, points%slave), largest_facet(model, points%master))
+      if (.not. reach > 0) reach = it%offset &
+        + 2*max(largest_facet(model, points%slave), largest_facet(model, points%master))
     end associate
     call start_search(points%search, model%ndm, points%master, reach)
-    points%search%side = real(model%interfaces(number)%side, wp)
+    points%search%offset = model%interfaces(number)%offset
     allocate (points%element, source=model%interfaces(number)%element)
+    if (model%interfaces(number)%side == 0) call find_side(model, points, model%interfaces(number)%side, status)
+    if (status /= ok) return
+    points%search%side = real(model%interfaces(number)%side, wp)
     if (points%nhist == 0) return
     call begin_histories(model, number, points, status)
     if (status == ok .and. points%np_bonded == 0) status = nothing_bonded
   end subroutine prepare_interface
+
+  subroutine find_side(model, points, side, status)
+    !! The sign with which the master's normal points to the slave's points in the reference position, however far away.
+    type(model_type), intent(in) :: model
+    type(interface_points_type), intent(inout), target :: points
+    integer, intent(out) :: side                    !! 1 for a solid's surface, which has an outside
+    integer, intent(out) :: status                  !! ok, side_unknown
+    real(wp), parameter :: rounding = 1.0e-10_wp    !! of the model's size
+    real(wp) :: reach, size_, height, least, most
+    integer :: i
+
+    side = 1
+    status = ok
+    if (all(points%master%side > 0)) return
+    reach = points%search%reach
+    size_ = norm2(maxval(model%x, 2) - minval(model%x, 2))
+    points%search%reach = max(reach, 2*size_)
+    call pair_interface(model, points, model%x)
+    least = 0
+    most = 0
+    do i = 1, points%np
+      if (points%facet(i) == 0) cycle
+      call height_above_master(model, points, i, height, status)
+      if (status /= ok) return
+      least = min(least, height)
+      most = max(most, height)
+    end do
+    if (-least > most) side = -1
+    if (min(-least, most) > rounding*size_ .or. max(-least, most) <= rounding*size_) status = side_unknown
+    points%search%reach = reach
+    points%facet = 0
+    points%xi = 0.5_wp
+    points%held = .false.
+    points%forced = 0
+    call forget_search(points)
+  end subroutine find_side
+
+  subroutine height_above_master(model, points, i, height, status)
+    !! (x_s - x_m) . n of a paired point in the reference position, with the normal t_1 x t_2.
+    type(model_type), intent(in) :: model
+    type(interface_points_type), intent(in), target :: points
+    integer, intent(in) :: i
+    real(wp), intent(out) :: height
+    integer, intent(out) :: status
+    real(wp), dimension(model%ndm) :: xs, xm, nrm
+    real(wp) :: shp(points%nen_max), dshp(model%ndm - 1, points%nen_max), d2shp(0, 0), tau(model%ndm, model%ndm - 1), area
+    integer, pointer, contiguous :: nodes(:)
+    integer :: m, n
+
+    m = points%facet(i)
+    nodes => points%master%set%connectivity(m)
+    n = size(nodes)
+    height = 0
+    call place_of_slave(model%x, points, i, xs)
+    call shape_functions(points%master%set%degree(1:model%ndm - 1, m), model%w(nodes), points%master%set%operator(m), &
+                         points%xi(:, i), 1, shp(1:n), dshp(:, 1:n), d2shp, status)
+    if (status /= ok) return
+    call tangent_frame_at(model%x(:, nodes), shp(1:n), dshp(:, 1:n), xm, tau, nrm, area, status)
+    if (status == ok) height = dot_product(xs - xm, nrm)
+  end subroutine height_above_master
 
   subroutine begin_histories(model, number, points, status)
     !! Bond the points that the deck says and that have a partner in the reference position.
@@ -356,6 +423,7 @@ contains
     geo%ndm = model%ndm
     geo%dp = model%ndm - 1
     geo%master%side = real(model%interfaces(number)%side, wp)
+    geo%master%offset = model%interfaces(number)%offset
     state%time = time
     state%dt = dt
   end subroutine start_work
@@ -440,114 +508,4 @@ contains
     points%search%boxes_moved = -1
     if (allocated(points%search%x)) deallocate (points%search%x)
   end subroutine forget_search
-
-  function pairs_covered(points) result(covered)
-    !! Whether the matrix pattern has room for every present pair.
-    type(interface_points_type), intent(in) :: points
-    logical :: covered
-    integer :: i, near((1 + 2*margin)**2 + 1), n
-
-    covered = .true.
-    do i = 1, points%np
-      if (points%facet(i) == 0 .or. points%facet(i) == points%room_for(i)) cycle
-      covered = points%room_for(i) > 0
-      if (.not. covered) return
-      call facets_around(points%master, points%room_for(i), near, n)
-      covered = any(near(1:n) == points%facet(i))
-      if (.not. covered) return
-    end do
-  end function pairs_covered
-
-  subroutine pair_lists(points, ptr, nodes)
-    !! Lists of nodes that couple: each slave facet with the master facets around its points' pairs. Notes them as
-    !! the pairs that the pattern has room for.
-    type(interface_points_type), intent(inout), target :: points
-    integer, allocatable, intent(inout) :: ptr(:), nodes(:)   !! lists so far, extended
-    integer :: i, k, n, s, near((1 + 2*margin)**2 + 1), ns, first, lists, items
-    integer, allocatable :: seen(:)
-    integer, pointer, contiguous :: slave_nodes(:), master_nodes(:)
-
-    points%room_for = points%facet
-    allocate (seen(points%np*size(near)))
-    lists = size(ptr) - 1
-    items = size(nodes)
-    ns = 0
-    first = 1
-    do i = 1, points%np
-      s = points%facet_of(i)
-      if (i > 1) then
-        if (points%facet_of(i - 1) /= s) first = ns + 1
-      end if
-      if (points%facet(i) == 0) cycle
-      slave_nodes => points%slave%set%connectivity(s)
-      call facets_around(points%master, points%facet(i), near, n)
-      do k = 1, n
-        if (any(seen(first:ns) == near(k))) cycle
-        ns = ns + 1
-        seen(ns) = near(k)
-        master_nodes => points%master%set%connectivity(near(k))
-        call reserve(ptr, lists + 2)
-        call reserve(nodes, items + size(slave_nodes) + size(master_nodes))
-        nodes(items + 1:items + size(slave_nodes)) = slave_nodes
-        items = items + size(slave_nodes)
-        nodes(items + 1:items + size(master_nodes)) = master_nodes
-        items = items + size(master_nodes)
-        lists = lists + 1
-        ptr(lists + 1) = items + 1
-      end do
-    end do
-    call cut(ptr, lists + 1)
-    call cut(nodes, items)
-  end subroutine pair_lists
-
-  pure subroutine cut(array, n)
-    !! Keep the first n items; element by element, as the temporary of array(1:n) may be larger than the stack.
-    integer, allocatable, intent(inout) :: array(:)
-    integer, intent(in) :: n
-    integer, allocatable :: smaller(:)
-    integer :: i
-
-    allocate (smaller(n))
-    do i = 1, n
-      smaller(i) = array(i)
-    end do
-    call move_alloc(smaller, array)
-  end subroutine cut
-
-  pure subroutine reserve(array, needed)
-    !! Room for so many items; doubling, so that growth costs little.
-    integer, allocatable, intent(inout) :: array(:)
-    integer, intent(in) :: needed
-    integer, allocatable :: larger(:)
-
-    if (size(array) >= needed) return
-    allocate (larger(2*needed))
-    larger(1:size(array)) = array
-    call move_alloc(larger, array)
-  end subroutine reserve
-
-  pure subroutine facets_around(surface, facet, near, n)
-    !! A facet and its neighbours up to `margin` steps away.
-    type(facet_surface), intent(in) :: surface
-    integer, intent(in) :: facet
-    integer, intent(out) :: near(:), n
-    integer :: ring, first, last, k, s, f
-
-    n = 1
-    near(1) = facet
-    first = 1
-    do ring = 1, margin
-      last = n
-      do k = first, last
-        do s = 1, size(surface%neighbour, 1)
-          f = surface%neighbour(s, near(k))
-          if (f == 0 .or. n == size(near)) cycle
-          if (any(near(1:n) == f)) cycle
-          n = n + 1
-          near(n) = f
-        end do
-      end do
-      first = last + 1
-    end do
-  end subroutine facets_around
 end module interface_points

@@ -12,9 +12,11 @@ module mesh_commands
   use patch_commands, only: read_patch
   use merge_commands, only: read_merge
   use spline_commands, only: read_spline_file, read_export
+  use quad_mesh_commands, only: read_quad_mesh
   use set_commands, only: read_set, read_tie
   use material_commands, only: read_material
   use condition_commands, only: read_values, read_proportional, read_links, read_surface_load
+  use joint_commands, only: read_joint
   use shell_conditions, only: read_shell_condition
   use interface_commands, only: read_contact
   use end_face_commands, only: read_end_face
@@ -89,6 +91,7 @@ contains
     case ('patc'); call read_patch(deck, rec, model, draft, log)
     case ('merg'); call read_merge(deck, rec, model, draft, log)
     case ('t-sp'); call read_spline_file(deck, rec, model, draft, log)
+    case ('quad'); call read_quad_mesh(deck, rec, model, draft, log)
     case ('tie');  call read_tie(rec, draft, log)
     case ('set');  call read_set(rec, draft, log)
     case ('mate'); call read_material(deck, rec, model, log)
@@ -96,6 +99,7 @@ contains
     case ('prop'); call read_proportional(deck, rec, model, log)
     case ('link'); call read_links(deck, model, draft, log)
     case ('sloa'); call read_surface_load(rec, model, draft, log)
+    case ('join'); call read_joint(rec, draft, log)
     case ('clam', 'symm'); call read_shell_condition(rec, draft, log)
     case ('cont'); call read_contact(deck, rec, model, draft, log)
     case ('endf'); call read_end_face(rec, model%ndm, draft, log)

@@ -9,10 +9,11 @@ module mesh_completion
   use spline_commands, only: follow_tied_nodes
   use mesh_exports, only: check_exports
   use conditions, only: resolve_conditions, resolve_links
-  use shell_conditions, only: resolve_clamps, resolve_symmetry
+  use joint_commands, only: resolve_joints
+  use shell_conditions, only: resolve_clamps, resolve_slopes
   use end_face_commands, only: resolve_end_faces, resolve_face_histories
   use interface_commands, only: resolve_interfaces, resolve_loads, resolve_histories
-  use model_check, only: check_mesh, check_nodes, check_geometry, switch_off_unused
+  use model_check, only: check_dimensions, check_mesh, check_nodes, check_geometry, switch_off_unused
   implicit none (type, external)
   private
   public :: complete_model
@@ -43,6 +44,7 @@ contains
     if (log%error_count() > mesh_errors) return
     if (any(model%mesh%nodes < 1) .or. any(model%mesh%nodes > model%nn)) return
     call check_nodes(model, draft, log)
+    if (log%error_count() == mesh_errors .and. all_materials) call check_dimensions(model, draft, log)
     if (log%error_count() == mesh_errors) call check_geometry(model, draft, log)
 
     if (draft%lost_elements > 0) draft%has_lost_sets = .true.
@@ -52,8 +54,10 @@ contains
     call resolve_clamps(model, draft, log)
     call resolve_conditions(model, draft, log)
     call resolve_links(model, draft, log)
-    call resolve_symmetry(model, draft, log)
     call resolve_end_faces(model, draft, log)
+    mesh_errors = log%error_count()
+    if (all_materials .and. .not. draft%has_lost_sets) call resolve_joints(model, draft, log)
+    if (log%error_count() == mesh_errors) call resolve_slopes(model, draft, log)
     call resolve_loads(model, draft, log)
     call resolve_interfaces(model, draft, log)
     call resolve_histories(model, draft, log)

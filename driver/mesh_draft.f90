@@ -12,7 +12,8 @@ module mesh_draft
   public :: append_value
   public :: draft_type, element_origin, set_request, value_request, tie_request, load_request, &
     interface_request, &
-    history_draft, link_request, end_face_request, named_operator, patch_part, shell_request
+    history_draft, link_request, end_face_request, named_operator, patch_part, shell_request, &
+    joint_request
 
   type :: element_origin
     !! The data set that elements come from.
@@ -94,6 +95,14 @@ module mesh_draft
     character(:), allocatable :: set          !! the edge
   end type shell_request
 
+  type :: joint_request
+    !! JOINt: seams between shells.
+    type(deck_place) :: at
+    type(string), allocatable :: names(:)     !! surfaces or element sets
+    real(wp) :: stiffness = 1000              !! relative
+    logical :: is_hinge = .false.
+  end type joint_request
+
   type :: named_operator
     !! OPERator: an extraction operator that several elements share.
     type(deck_place) :: at
@@ -132,6 +141,7 @@ module mesh_draft
     integer :: n_boundary = 0, n_displacement = 0, n_force = 0, n_proportional = 0
     type(link_request), allocatable :: links(:)
     type(shell_request), allocatable :: shell_conditions(:)
+    type(joint_request), allocatable :: joints(:)
     type(load_request), allocatable :: loads(:)
     type(interface_request), allocatable :: interfaces(:)
     type(end_face_request), allocatable :: end_faces(:)
@@ -158,7 +168,8 @@ contains
     allocate (self%parts(0))
     allocate (self%origins(0), self%operators(0), self%sets(0), self%ties(0), self%links(0), &
       self%loads(0), &
-      self%interfaces(0), self%end_faces(0), self%histories(0), self%shell_conditions(0))
+      self%interfaces(0), self%end_faces(0), self%histories(0), self%shell_conditions(0), &
+      self%joints(0))
     allocate (self%boundary(0), self%displacement(0), self%force(0), self%proportional(0))
     allocate (model%sets(0), model%materials(0), model%props(0), model%links(0), model%loads(0), &
       model%interfaces(0), model%histories(0), model%exports(0))

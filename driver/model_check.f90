@@ -14,7 +14,7 @@ module model_check
   use surface_frame, only: tangent_frame_at
   implicit none (type, external)
   private
-  public :: check_mesh, check_nodes, check_geometry, switch_off_unused
+  public :: check_dimensions, check_mesh, check_nodes, check_geometry, switch_off_unused
 
 contains
 
@@ -85,6 +85,26 @@ contains
     end do
   end subroutine check_nodes
 
+  subroutine check_dimensions(model, draft, log)
+    !! The material of an element is made for its parametric dimension. One message for each data set.
+    type(model_type), intent(in) :: model
+    type(draft_type), intent(in) :: draft
+    type(message_log), intent(inout) :: log
+    integer :: e, i, made_for
+
+    do i = 1, size(draft%origins)
+      do e = max(draft%origins(i)%first, 1), draft%origins(i)%last
+        made_for = model%materials(model%material_of(e))%element%dp
+        if (made_for == 0 .or. made_for == model%mesh%dp(e)) cycle
+        call log%add_error(draft%element_place(e), draft%element_name(e), 'element ' // whole_text(e) // ' has ' // &
+          whole_text(model%mesh%dp(e)) // ' parametric directions, its material ' // &
+          whole_text(model%materials(model%material_of(e))%number) // ' is made for ' // whole_text(made_for), &
+          'Surfaces in space take SHELl, bodies SOLId')
+        exit
+      end do
+    end do
+  end subroutine check_dimensions
+
   subroutine check_geometry(model, draft, log)
     !! det J is positive at Gauss points and not negative at corners (where it may vanish: collapsed
     !! edges). One message for each data set.
@@ -132,6 +152,8 @@ contains
       if (first_status /= ok .and. model%mesh%dp(first) < model%ndm) fact = 'element ' // &
         whole_text(first) // &
         ' has no area at ' // point_text(worst_place)
+      if (first_status /= ok .and. model%mesh%dp(first) < model%ndm) remedy = &
+        'Its control points lie in a point or on a line: check them and their order'
       if (bad > 1) fact = fact // ' (and ' // whole_text(bad - 1) // &
         ' more elements of this data set)'
       call log%add_error(at, draft%element_name(first), fact, remedy)

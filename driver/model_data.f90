@@ -9,7 +9,7 @@ module model_data
   implicit none (type, external)
   private
   public :: model_type, named_set, material_type, time_function, surface_load_type, interface_type, bond_region, &
-    history_request, output_request, linear_constraint, end_face_type, extraction_set_type, mesh_export
+    history_request, output_request, linear_constraint, end_face_type, extraction_set_type, mesh_export, shell_joint_type
   public :: set_nodes, set_elements, set_surface
 
   integer, parameter :: set_nodes = 1, set_elements = 2, set_surface = 3
@@ -62,7 +62,9 @@ module model_data
     character(:), allocatable :: name, place
     integer :: slave = 0, master = 0     !! indices into sets (surfaces)
     integer :: gp = 2                    !! Gauss points per direction on each slave facet
-    integer :: side = 1                  !! sign of the master's normal (shells)
+    integer :: side = 1                  !! sign of the master's normal; 0: for shells, that which the start tells
+    real(wp) :: offset = 0               !! distance of the surfaces at which the gap is 0 (half the thicknesses of
+                                         !! shells) [length]
     real(wp) :: reach = 0                !! search distance [length], 0: chosen from facet sizes
     type(bond_region), allocatable :: regions(:)  !! with cohesion: what is bonded; none: everything
     class(element_type), allocatable :: element
@@ -109,6 +111,12 @@ module model_data
     character(:), allocatable :: place
   end type linear_constraint
 
+  type :: shell_joint_type
+    !! Two sides of shell elements that a rotational spring connects (JOINt).
+    integer :: element(2) = 0, side(2) = 0
+    real(wp) :: stiffness = 0            !! times bending rigidity over the length of the side
+  end type shell_joint_type
+
   type :: mesh_export
     !! A file that the mesh is written to (EXPOrt).
     type(deck_place) :: at
@@ -138,6 +146,7 @@ module model_data
     type(linear_constraint), allocatable :: links(:)
     integer :: globals = 0                           !! columns of globals
     type(end_face_type), allocatable :: end_faces(:)
+    type(shell_joint_type), allocatable :: joints(:)
     type(surface_load_type), allocatable :: loads(:)
     type(interface_type), allocatable :: interfaces(:)
     type(history_request), allocatable :: histories(:)

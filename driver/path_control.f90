@@ -15,7 +15,8 @@ module path_control
   use model_data, only: model_type
   use equilibrium, only: equilibrium_type, commit, roll_back, work_of_increment
   use newton, only: newton_settings, solve_increment
-  use path_increment, only: path_constraint, solve_path_increment, path_arc, path_dissipation
+  use path_increment, only: path_constraint, solve_path_increment, path_arc, path_dissipation, &
+    nothing_left
   use linear_solver, only: inertia_unknown
   use step_control, only: step_control_type, step_report, note_rate
   use timers, only: timer_set
@@ -28,7 +29,8 @@ module path_control
 
   real(wp), parameter :: dissipating = 0.1_wp   !! share of the energy from which dissipation controls
   real(wp), parameter :: imbalance = 0.2_wp     !! share of an increment's energy that a smooth one cannot miss
-  real(wp), parameter :: negligible = 1.0e-3_wp !! share of all energy so far that may be missed, or not be dissipated
+  real(wp), parameter :: negligible = 1.0e-3_wp !! share of all energy so far that may be missed
+  real(wp), parameter :: spent = 1.0e-5_wp      !! share of all energy so far that need not be dissipated
   integer, parameter :: most_halvings = 4       !! of an increment before the next kind of control is tried
 
   type :: path_control_type
@@ -82,7 +84,7 @@ contains
     type(step_report), intent(out) :: report
     integer, intent(out) :: status
     integer :: halvings
-    logical :: smooth
+    logical :: smooth, ends
 
     halvings = 0
     path%nothing_left = .false.
@@ -103,9 +105,11 @@ contains
       report%cutbacks = report%cutbacks + 1
       halvings = halvings + 1
       call shorten(path)
-      if (halvings < most_halvings .and. .not. hardly_dissipates(path, eq)) cycle
+      ends = report%last%fault == nothing_left .and. hardly_dissipates(path, eq)
+      if (report%last%fault == nothing_left .and. .not. ends) cycle
+      if (halvings < most_halvings .and. .not. ends) cycle
       halvings = 0
-      if (.not. other_control(path, eq)) return
+      if (.not. other_control(path, eq, ends)) return
     end do
     call accept(model, eq, control, path, report)
   end subroutine advance_path
@@ -138,8 +142,8 @@ contains
   end subroutine solve_by_mode
 
   subroutine judge(model, eq, path, smooth)
-    !! Whether a converged increment lies on the path: its energies balance, and an increment by time has not left the
-    !! stable side while nothing dissipates.
+    !! Whether a converged increment lies on the path: its energies balance, and an arc goes on, not back to where it came
+    !! from nor, once interfaces open, unloading without any dissipation.
     type(model_type), intent(in) :: model
     type(equilibrium_type), intent(in) :: eq
     type(path_control_type), intent(in) :: path
@@ -152,6 +156,8 @@ contains
     if (path%mode == by_arc .and. allocated(path%along) .and. abs(dissipated) <= dissipating*scale) &
       smooth = smooth .and. sum((eq%u(1:model%ndm, 1:model%nn) - eq%un(1:model%ndm, 1:model%nn)) &
                                 *path%along(1:model%ndm, 1:model%nn)) > 0
+    if (path%mode == by_arc .and. eq%energies_n%dissipated > 0 .and. work < 0) &
+      smooth = smooth .and. dissipated > negligible*abs(work)   ! else it goes back, unloading
   end subroutine judge
 
   pure function hardly_dissipates(path, eq) result(yes)
@@ -159,7 +165,7 @@ contains
     type(equilibrium_type), intent(in) :: eq
     logical :: yes
 
-    yes = path%mode == by_dissipation .and. path%dissipation <= negligible*energy_so_far(eq)
+    yes = path%mode == by_dissipation .and. path%dissipation <= spent*energy_so_far(eq)
   end function hardly_dissipates
 
   pure function energy_so_far(eq) result(energy)
@@ -189,20 +195,29 @@ contains
     end select
   end subroutine shorten
 
-  function other_control(path, eq) result(found)
+  function other_control(path, eq, ends) result(found)
     !! The next kind of control to try for this increment: dissipation after time, and after it time again if what is
-    !! left to dissipate is negligible; arc length last.
+    !! left to dissipate is negligible; then arc length, last once more time.
     type(path_control_type), intent(inout) :: path
     type(equilibrium_type), intent(in) :: eq
+    logical, intent(in) :: ends          !! nothing is left to dissipate
     logical :: found
 
-    found = path%asked == path_auto .and. path%mode /= by_arc
+    found = path%asked == path_auto .and. .not. (path%mode == by_arc .and. path%nothing_left)
     if (.not. found) return
+    if (path%mode == by_arc) then   ! a point that broke while everything else unloaded: the path turns forward
+      found = eq%energies_n%dissipated > 0
+      path%mode = by_time
+      path%time_step = path%most_time
+      path%nothing_left = .true.
+      return
+    end if
     if (path%mode == by_time .and. size(eq%interfaces) > 0 .and. .not. path%nothing_left) then
       path%mode = by_dissipation
-      path%dissipation = 1.0e-2_wp*max(eq%energies_n%elastic, eq%energies_n%dissipated)
+      if (.not. path%dissipation > 0) path%dissipation = 1.0e-2_wp*max(eq%energies_n%elastic, eq%energies_n%dissipated)
+      path%dissipation = min(path%dissipation, path%most_length)
       if (path%dissipation > 0) return
-    else if (hardly_dissipates(path, eq)) then
+    else if (ends) then
       path%mode = by_time
       path%time_step = path%most_time
       path%nothing_left = .true.
@@ -243,7 +258,8 @@ contains
 
     select case (path%asked)
     case (path_auto)
-      dissipates = dissipated > dissipating*max(abs(work), abs(stored), abs(dissipated))
+      dissipates = dissipated > dissipating*max(abs(work), abs(stored), abs(dissipated)) .or. &
+        (dissipated > 0 .and. path%along_time < 0)   ! time cannot go on where it went back
       if (dissipates) then
         path%mode = by_dissipation
       else if (path%mode == by_arc .and. (path%unstable .or. path%along_time < 0)) then

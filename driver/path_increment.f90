@@ -23,9 +23,10 @@ module path_increment
   use timers, only: timer_set, phase_factorise, phase_solve
   implicit none (type, external)
   private
-  public :: path_constraint, solve_path_increment, path_arc, path_dissipation
+  public :: path_constraint, solve_path_increment, path_arc, path_dissipation, nothing_left
 
   integer, parameter :: path_arc = 1, path_dissipation = 2
+  character(*), parameter :: nothing_left = 'nothing is left to dissipate'
   real(wp), parameter :: constraint_tolerance = 1.0e-6_wp   !! relative; where on the path a step ends matters little
 
   type :: path_constraint
@@ -81,7 +82,7 @@ contains
                                           .false.))
         return
       end if
-      if (k > settings%most_iterations) then
+      if (k > settings%most_iterations .or. goes_round(report)) then
         status = no_convergence
         exit
       end if
@@ -118,7 +119,7 @@ contains
       else
         if (.not. any(abs(gradient) > 0) .and. eq%energies%dissipated > eq%energies_n%dissipated) then
           status = no_convergence
-          report%fault = 'nothing is left to dissipate'
+          report%fault = nothing_left
           exit
         end if
         call eq%system%map%reduce(gradient, c)
@@ -143,6 +144,22 @@ contains
     if (len(report%fault) == 0) report%fault = eq%fault
     if (len(report%fault) == 0) report%fault = 'no convergence of path following within the allowed iterations'
   end subroutine solve_path_increment
+
+  pure function goes_round(report) result(yes)
+    !! Whether the iteration alternates between two states, as it does where points load and unload in turn: it would
+    !! never end.
+    type(newton_report), intent(in) :: report
+    logical :: yes
+    real(wp) :: now(2), before(2)
+    integer :: n
+
+    n = size(report%records)
+    yes = n >= 8
+    if (.not. yes) return
+    now = report%records(n - 1:n)%residual
+    before = report%records(n - 3:n - 2)%residual
+    yes = all(abs(now - before) <= 1.0e-3_wp*before)
+  end function goes_round
 
   subroutine form_constraint(model, eq, constraint, g, scale_g, gradient)
     !! g, what it is compared with, and dg/du.

@@ -145,7 +145,8 @@ class Results:
         self.group = group
         self.fields = [name for name in group['PointData'] if name != 'RationalWeights']
         self.solid = bool((self.degrees[:, 2] > 0).any())
-        self.ndm = 3 if self.solid or np.ptp(self.points[:, 2]) > 0 else 2
+        rises = len(self.steps) > 0 and 'displacement' in self.fields and self.values('displacement', -1)[:, 2].any()
+        self.ndm = 3 if self.solid or np.ptp(self.points[:, 2]) > 0 or rises else 2     # flat shells leave their plane
 
     def title(self):
         try:

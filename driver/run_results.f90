@@ -87,6 +87,13 @@ contains
     name = label//'_'//kind//char(iachar('x') + component - 1)
   end function column_label
 
+  pure function end_column(label, kind) result(name)
+    !! `<label>_m`, `<label>_rot`.
+    character(*), intent(in) :: label, kind
+    character(label_length) :: name
+    name = label//kind
+  end function end_column
+
   function labels(model) result(names)
     !! The columns of history.csv that the deck asks for, in its order.
     type(model_type), intent(in) :: model
@@ -99,8 +106,8 @@ contains
       associate (request => model%histories(h))
         if (request%reaction) names = [names, (column_label(request%label, 'r', i), i=1, model%ndm)]
         if (request%displacement) names = [names, (column_label(request%label, 'u', i), i=1, model%ndm)]
-        if (request%moment) names = [names, [character(label_length) :: request%label//'_m']]
-        if (request%rotation) names = [names, [character(label_length) :: request%label//'_rot']]
+        if (request%moment) names = [names, end_column(request%label, '_m')]
+        if (request%rotation) names = [names, end_column(request%label, '_rot')]
         if (request%work) names = [names, [character(label_length) :: 'work']]
         if (request%elastic) names = [names, [character(label_length) :: 'elastic']]
         if (request%dissipated) names = [names, [character(label_length) :: 'dissipated']]
@@ -116,16 +123,18 @@ contains
     type(model_type), intent(in) :: model
     type(equilibrium_type), intent(in) :: eq
     integer, intent(in) :: step, iterations, cutbacks
-    real(wp), allocatable :: values(:)
+    real(wp), allocatable :: values(:), supports(:, :)
     integer, allocatable :: nodes(:)
     integer :: h, i
 
     allocate (values(0))
     if (allocated(model%histories)) then
+      allocate (supports, mold=eq%f_n)
+      call eq%system%map%support_forces(eq%f_n, supports)
       do h = 1, size(model%histories)
         associate (request => model%histories(h))
           if (request%reaction .or. request%displacement) nodes = nodes_of_set(model, request%set)
-          if (request%reaction) values = [values, (sum(eq%f_n(i, nodes)), i=1, model%ndm)]
+          if (request%reaction) values = [values, (sum(supports(i, nodes)), i=1, model%ndm)]
           if (request%displacement) values = [values, (sum(eq%un(i, nodes))/max(size(nodes), 1), i=1, model%ndm)]
           if (request%moment) values = [values, end_moment(model, eq, request%end_face)]
           if (request%rotation) values = [values, eq%un(1, model%end_faces(request%end_face)%rotation)]

@@ -5,7 +5,8 @@ module shell_conditions
   !!     SYMMetry roof.top [roof.bottom ...]    the plane across the edge is one of symmetry
   !!
   !! Without rotations as unknowns the slope of an edge is that of its two first rows of functions (module edge_rows). A
-  !! clamp fixes both. Symmetry with the plane's unit normal n keeps the first row in the plane and the slope normal to it:
+  !! clamp fixes the first and lets the second follow it, u_a = sum_b C_ab u_b: all components, or, where one normal n
+  !! serves the whole edge, only n . u_a, so that the shell can stretch in its plane up to the edge. Symmetry with the plane's unit normal n keeps the first row in the plane and the slope normal to it:
   !!
   !!     n . u_a = 0 (first row),     t . (u_a - sum_b C_ab u_b) = 0 for both directions t in the plane (second row a)
   !!
@@ -22,7 +23,7 @@ module shell_conditions
   use linear_relations, only: relation_set
   implicit none (type, external)
   private
-  public :: read_shell_condition, resolve_clamps, resolve_symmetry, shell_edge
+  public :: read_shell_condition, resolve_clamps, resolve_slopes, shell_edge
 
 contains
 
@@ -74,7 +75,7 @@ contains
   end function shell_edge
 
   subroutine resolve_clamps(model, draft, log)
-    !! Before the conditions: clamped rows become node sets and codes.
+    !! Before the conditions: clamped edges are fixed; both rows become a node set.
     type(model_type), intent(inout) :: model
     type(draft_type), intent(inout) :: draft
     type(message_log), intent(inout) :: log
@@ -89,7 +90,7 @@ contains
         if (find_set(model, request%set // '.slope') == 0) call add_set(model, request%set // '.slope', &
           in_place(request%at), set_nodes, slope_nodes(model, set), [integer ::])
         fix%at = request%at
-        fix%set = request%set // '.slope'
+        fix%set = request%set
         fix%v1 = spread(1.0_wp, 1, model%ndf)
         fix%v2 = fix%v1
         call append_value(draft%boundary, draft%n_boundary, fix)
@@ -97,16 +98,23 @@ contains
     end do
   end subroutine resolve_clamps
 
-  subroutine resolve_symmetry(model, draft, log)
-    !! After the conditions and the links.
+  subroutine resolve_slopes(model, draft, log)
+    !! Slopes of clamps, then planes of symmetry; after the conditions and the links.
     type(model_type), intent(inout) :: model
     type(draft_type), intent(in) :: draft
     type(message_log), intent(inout) :: log
     type(relation_set) :: relations
     integer :: i, set
 
-    if (.not. any(draft%shell_conditions%keyword == 'symm')) return
+    if (size(draft%shell_conditions) == 0) return
     call relations%start(model)
+    do i = 1, size(draft%shell_conditions)
+      associate (request => draft%shell_conditions(i))
+        if (request%keyword /= 'clam') cycle
+        set = find_set_of_kind(model, request%set, set_surface)
+        if (set > 0) call add_clamp(model, request, set, relations, log)
+      end associate
+    end do
     do i = 1, size(draft%shell_conditions)
       associate (request => draft%shell_conditions(i))
         if (request%keyword /= 'symm') cycle
@@ -115,7 +123,65 @@ contains
       end associate
     end do
     call relations%finish(model)
-  end subroutine resolve_symmetry
+  end subroutine resolve_slopes
+
+  subroutine add_clamp(model, request, set, relations, log)
+    type(model_type), intent(inout) :: model
+    type(shell_request), intent(in) :: request
+    integer, intent(in) :: set
+    type(relation_set), intent(inout) :: relations
+    type(message_log), intent(inout) :: log
+    type(edge_type) :: edge
+    real(wp), allocatable :: coef(:, :)
+    real(wp) :: directions(3, 3), error
+    integer :: k, status
+    logical :: contradicts, flat
+
+    call collect_edge(model, set, edge, status)
+    if (status == ok) call slope_dependence(edge%slope, edge%length, size(edge%first), coef, error, status)
+    if (status /= ok) then
+      call log%add_error(request%at, 'CLAMp', 'the functions behind ' // quoted(request%set) // &
+        ' cannot set its slope', 'Shells need smooth bases of degree 2 or more, as NURBS, and edges of some length')
+      return
+    end if
+    directions = 0
+    do k = 1, 3
+      directions(k, k) = 1
+    end do
+    flat = all(matmul(edge%nrm(:, 1), edge%nrm) > 1 - 1e-12_wp)
+    if (flat) then
+      directions(:, 1) = edge%nrm(:, 1)
+      where (abs(directions(:, 1)) < 1e-12_wp) directions(:, 1) = 0
+    end if
+    call add_second_row(model, edge, coef, directions(:, :merge(1, 3, flat)), in_place(request%at), relations, contradicts)
+    if (contradicts) call log%add_error(request%at, 'CLAMp', 'values prescribed behind ' // quoted(request%set) // &
+      ' contradict the clamp', 'Prescribe values on the edge itself; what is behind follows')
+  end subroutine add_clamp
+
+  subroutine add_second_row(model, edge, coef, t, place, relations, contradicts)
+    !! t . (u_a - sum_b C_ab u_b) = 0 for the second row and all directions t.
+    type(model_type), intent(inout) :: model
+    type(edge_type), intent(in) :: edge
+    real(wp), intent(in) :: coef(:, :)                  !! C
+    real(wp), intent(in) :: t(:, :)                     !! (3,directions)
+    character(*), intent(in) :: place
+    type(relation_set), intent(inout) :: relations
+    logical, intent(out) :: contradicts
+    integer, allocatable :: nodes(:), masters(:)
+    integer :: a, b, i, k
+    logical :: wrong
+
+    contradicts = .false.
+    do a = 1, size(edge%second)
+      masters = pack([(b, b=1, size(edge%first))], abs(coef(a, :)) > 0)
+      nodes = [edge%second(a), edge%first(masters)]
+      do k = 1, size(t, 2)
+        call relations%add(model, [((nodes(b), i=1, 3), b=1, size(nodes))], [((i, i=1, 3), b=1, size(nodes))], &
+          [t(:, k), ((-coef(a, masters(b))*t(i, k), i=1, 3), b=1, size(masters))], place, wrong)
+        contradicts = contradicts .or. wrong
+      end do
+    end do
+  end subroutine add_second_row
 
   subroutine add_symmetry(model, request, set, relations, log)
     type(model_type), intent(inout) :: model
@@ -127,9 +193,8 @@ contains
     real(wp), allocatable :: coef(:, :)
     real(wp) :: n(3), t(3, 2), error, off, slant
     real(wp), parameter :: near = 1e-6_wp
-    integer :: a, b, i, k, n1, status
+    integer :: a, n1, status
     logical :: wrong, contradicts
-    integer, allocatable :: nodes(:), masters(:)
     character(:), allocatable :: place
 
     call collect_edge(model, set, edge, status)
@@ -153,7 +218,7 @@ contains
     call slope_dependence(edge%slope, edge%length, n1, coef, error, status)
     if (status /= ok) then
       call log%add_error(request%at, 'SYMMetry', 'the functions behind ' // quoted(request%set) // &
-        ' cannot set its slope', 'Its elements need degree 2 or more')
+        ' cannot set its slope', 'Shells need smooth bases of degree 2 or more, as NURBS')
       return
     end if
     if (error > near) call log%add_warning(request%at, 'SYMMetry', 'the slope along ' // quoted(request%set) // &
@@ -167,15 +232,8 @@ contains
       call relations%add(model, [edge%first(a), edge%first(a), edge%first(a)], [1, 2, 3], n, place, contradicts)
       wrong = wrong .or. contradicts
     end do
-    do a = 1, size(edge%second)
-      masters = pack([(b, b=1, n1)], abs(coef(a, :)) > 0)
-      nodes = [edge%second(a), edge%first(masters)]
-      do k = 1, 2
-        call relations%add(model, [((nodes(b), i=1, 3), b=1, size(nodes))], [((i, i=1, 3), b=1, size(nodes))], &
-          [t(:, k), ((-coef(a, masters(b))*t(i, k), i=1, 3), b=1, size(masters))], place, contradicts)
-        wrong = wrong .or. contradicts
-      end do
-    end do
+    call add_second_row(model, edge, coef, t, place, relations, contradicts)
+    wrong = wrong .or. contradicts
     if (wrong) call log%add_error(request%at, 'SYMMetry', 'values prescribed on ' // quoted(request%set) // &
       ' or behind it contradict the symmetry', 'Nothing moves across the plane, both rows behind the edge move alike')
   end subroutine add_symmetry

@@ -37,7 +37,7 @@ module spline_commands
   use file_system, only: file_exists, folder_exists
   implicit none (type, external)
   private
-  public :: read_spline_file, read_export, follow_tied_nodes
+  public :: read_spline_file, read_export, follow_tied_nodes, beside
 
 contains
 

@@ -10,7 +10,8 @@ module gpts_corner
   !!     fe = p N w_g j_g
   !!     ke = [ dp/dg N N^T + p ( D_a N_a^T + N_a D_a^T - k_ab D_a D_b^T + Q Q^T / g ) ] w_g j_g,   Q = (M - D_a tau_a^T) P
   !!
-  !! which is (58) of the paper before g delta n = P (delta d) is resolved into the tangents of a smooth surface.
+  !! where p is the traction of the gap g - offset. It is (58) of the paper before g delta n = P (delta d) is resolved into
+  !! the tangents of a smooth surface.
   use kinds, only: wp
   use status_codes, only: ok, singular_projection
   use surface_frame, only: tangent_frame_at
@@ -39,7 +40,7 @@ contains
     real(wp), contiguous, intent(inout) :: fe(:, :)      !! internal force (ndm,nes+nem) [force]
     real(wp), contiguous, intent(inout) :: ke(:, :, :, :) !! blocks a >= b [force/length]
     integer, intent(out) :: status                       !! ok, singular_map, singular_projection
-    real(wp) :: x(size(xm, 1)), tau(size(xm, 1), size(dshp_m, 1)), nrm(size(xm, 1)), area, distance, gap
+    real(wp) :: x(size(xm, 1)), tau(size(xm, 1), size(dshp_m, 1)), nrm(size(xm, 1)), area, distance
     integer :: a, nes
 
     nes = size(shp_s)
@@ -50,10 +51,9 @@ contains
     do a = 1, nes
       x = x + shp_s(a)*xs(:, a)
     end do
-    distance = norm2(x)
-    gap = sign(distance, dot_product(x, nrm))
-    if (distance > 0) nrm = x/gap
-    call interface_response(law, gap, opening_n, response)
+    distance = sign(norm2(x), dot_product(x, nrm))
+    if (abs(distance) > 0) nrm = x/distance
+    call interface_response(law, distance - law%offset, opening_n, response)
     response%penalty_energy = wt*response%penalty_energy
     response%elastic_energy = wt*response%elastic_energy
     response%dissipated = wt*response%dissipated
@@ -65,14 +65,15 @@ contains
       fe(:, nes + a) = (-wt*response%traction*shp_m(a))*nrm
     end do
     if (want_tangent) call corner_tangent(size(xm, 1), nes, size(shp_m), shp_s, shp_m, dshp_m, d2shp_m, xm, tau, nrm, held, &
-                                          response, wt, ke, status)
+                                          distance, response, wt, ke, status)
   end subroutine gpts_corner_point
 
-  pure subroutine corner_tangent(ndm, nes, nem, shp_s, shp_m, dshp_m, d2shp_m, xm, tau, nrm, held, response, wt, ke, status)
+  pure subroutine corner_tangent(ndm, nes, nem, shp_s, shp_m, dshp_m, d2shp_m, xm, tau, nrm, held, gap, response, wt, ke, status)
     integer, intent(in) :: ndm, nes, nem
     real(wp), intent(in) :: shp_s(nes), shp_m(nem), dshp_m(:, :), d2shp_m(:, :), xm(:, :), tau(:, :)
     real(wp), intent(in) :: nrm(ndm)                     !! d / g
     logical, intent(in) :: held(:)
+    real(wp), intent(in) :: gap                          !! g, the signed distance
     type(gap_response), intent(in) :: response
     real(wp), intent(in) :: wt
     real(wp), intent(inout) :: ke(ndm*(nes + nem), ndm*(nes + nem))
@@ -85,7 +86,7 @@ contains
     status = ok
     p = wt*response%traction
     p_over_g = wt*response%slope                         ! the limit for g -> 0
-    if (abs(response%gap) > 0) p_over_g = p/response%gap
+    if (abs(gap) > 0) p_over_g = p/gap
     m = 0
     do i = 1, ndm
       do a = 1, nes
@@ -111,7 +112,7 @@ contains
         kappa = kappa + d2shp_m(free, a)*dot_product(xm(:, a), nrm)
       end do
       metric = dot_product(tau(:, free), tau(:, free))
-      low = metric - response%gap*kappa
+      low = metric - gap*kappa
       if (.not. low > 1.0e-12_wp*metric) then
         status = singular_projection
         return
@@ -119,7 +120,7 @@ contains
       do i = 1, ndm
         d1 = d1 + m(:, i)*tau(i, free)
       end do
-      d1 = (d1 - response%gap*n1)/low
+      d1 = (d1 - gap*n1)/low
       do i = 1, ndm
         q(:, i) = q(:, i) - d1*tau(i, free)
       end do

@@ -222,6 +222,7 @@ contains
     real(wp) :: shp(geo%master%nen), dshp(self%ndm - 1, geo%master%nen)
     real(wp) :: d2shp((self%ndm - 1)*self%ndm/2, geo%master%nen)
     real(wp) :: opening
+    type(gap_law) :: law
     type(gap_response) :: response
     integer :: a, dp, ns
     logical :: want_tangent
@@ -244,13 +245,15 @@ contains
       want_tangent = task == task_tangent
       call shape_functions(m%degree(1:dp), m%we, m%ce, m%xi(1:dp), merge(2, 1, want_tangent), shp, dshp, d2shp, status)
       if (status /= ok) return
+      law = self%law
+      law%offset = m%offset
       opening = 0
       if (size(state%hist_n) > 0) opening = state%hist_n(1)
       if (any(m%held(1:dp))) then
         call gpts_corner_point(geo%table(2:ns + 1), x(:, 1:ns), shp, dshp, d2shp, x(:, ns + 1:), m%side, m%held(1:dp), &
-                               self%law, opening, geo%table(1), want_tangent, response, fe, ke, status)
+                               law, opening, geo%table(1), want_tangent, response, fe, ke, status)
       else
-        call gpts_point(geo%table(2:ns + 1), x(:, 1:ns), shp, dshp, d2shp, x(:, ns + 1:), m%side, self%law, opening, &
+        call gpts_point(geo%table(2:ns + 1), x(:, 1:ns), shp, dshp, d2shp, x(:, ns + 1:), m%side, law, opening, &
                         geo%table(1), want_tangent, response, fe, ke, status)
       end if
     end associate

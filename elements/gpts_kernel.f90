@@ -5,6 +5,9 @@ module gpts_kernel
   !!
   !!     g = (x_s - x_m) . n,     A_ab = m_ab - g k_ab,     upper indices: inverses
   !!
+  !! (with an offset of the law, p is that of the gap g - offset: between mid-surfaces of shells g is
+  !! their distance, and the gap is that of the faces which look at each other)
+  !!
   !! Vectors over the slave, then the master control points:
   !!
   !!     N = [ R^s n ; -R^m n ]     N_a = [ 0 ; -R^m_,a n ]     T_a = [ R^s tau_a ; -R^m tau_a ]
@@ -25,7 +28,7 @@ module gpts_kernel
   use kinds, only: wp
   use status_codes, only: ok, singular_projection
   use surface_frame, only: tangent_frame_at, metric_and_curvature
-  use interface_law, only: gap_law, gap_response, interface_response
+  use interface_law, only: has_cohesion, gap_law, gap_response, interface_response
   implicit none (type, external)
   private
   public :: gpts_point
@@ -33,7 +36,8 @@ module gpts_kernel
   ! det A over det m below which x_s is at a centre of curvature
   real(wp), parameter :: singular_ratio = 1.0e-12_wp
   ! A gap below this times the coordinates is rounding: the faces touch, and their points are closed.
-  ! Otherwise the first tangent of two blocks face to face has closed and open points at random.
+  ! Otherwise the first tangent of two blocks face to face has closed and open points at random. Points with cohesion
+  ! don't need it: their traction must be continuous, or a stiff penalty keeps Newton's method from converging.
   real(wp), parameter :: touching = 32 * epsilon(1.0_wp)
 
 contains
@@ -58,7 +62,7 @@ contains
     integer, intent(out) :: status                       !! ok, singular_map, singular_projection
     real(wp) :: x(size(xm,1)), tau(size(xm,1),size(dshp_m,1)), nrm(size(xm,1)), area
     real(wp), dimension(size(dshp_m,1),size(dshp_m,1)) :: metric, metric_inv, curvature
-    real(wp) :: gap
+    real(wp) :: distance, gap
     integer :: a, nes
 
     nes = size(shp_s)
@@ -70,8 +74,9 @@ contains
     do a = 1, nes
       x = x + shp_s(a) * xs(:,a)
     end do
-    gap = dot_product(x, nrm)
-    if (abs(gap) <= touching * maxval(abs(xm))) gap = 0
+    distance = dot_product(x, nrm)
+    gap = distance - law%offset
+    if (abs(gap) <= touching * maxval(abs(xm)) .and. .not. has_cohesion(law, opening_n)) gap = 0
     call interface_response(law, gap, opening_n, response)
     response%penalty_energy = wt * response%penalty_energy
     response%elastic_energy = wt * response%elastic_energy
@@ -89,7 +94,7 @@ contains
     if (abs(response%traction) > 0) then
       call metric_and_curvature(xm, d2shp_m, tau, nrm, metric, metric_inv, curvature)
       call full_tangent(size(xm, 1), size(dshp_m, 1), nes, size(shp_m), shp_s, shp_m, dshp_m, &
-        tau, nrm, metric, metric_inv, curvature, response, wt, ke, status)
+        tau, nrm, metric, metric_inv, curvature, distance, response, wt, ke, status)
     else
       call main_tangent(size(xm, 1), nes, size(shp_m), shp_s, shp_m, nrm, wt * response%slope, ke)
     end if
@@ -135,13 +140,14 @@ contains
   end subroutine gap_vector
 
   pure subroutine full_tangent(ndm, dp, nes, nem, shp_s, shp_m, dshp_m, tau, nrm, metric, &
-      metric_inv, curvature, response, wt, ke, status)
+      metric_inv, curvature, gap, response, wt, ke, status)
     integer, intent(in) :: ndm, dp, nes, nem             !! dimensions, slave and master functions
     real(wp), intent(in) :: shp_s(nes), shp_m(nem), dshp_m(dp,nem)
     real(wp), intent(in) :: tau(ndm,dp), nrm(ndm)        !! master frame, normal outward
     real(wp), intent(in) :: metric(dp,dp)                !! m_ab
     real(wp), intent(in) :: metric_inv(dp,dp)            !! m^ab
     real(wp), intent(in) :: curvature(dp,dp)             !! k_ab with the outward normal
+    real(wp), intent(in) :: gap                          !! g, the distance of the surfaces
     type(gap_response), intent(in) :: response
     real(wp), intent(in) :: wt                           !! w_g j_g [area]
     real(wp), intent(inout) :: ke(ndm*(nes+nem),ndm*(nes+nem))
@@ -151,10 +157,9 @@ contains
     real(wp), dimension(ndm*(nes+nem)) :: of_n           ! what multiplies N in each column
     real(wp), dimension(ndm*(nes+nem),dp) :: of_n1, of_d ! what multiplies N_a and D_a
     real(wp) :: lift(dp,dp), bend(dp,dp)                 ! g m^ab, g k_ac m^cb
-    real(wp) :: a_inv(dp,dp), p, gap
+    real(wp) :: a_inv(dp,dp), p
     integer :: a, al, be, c, first, i, r
 
-    gap = response%gap
     p = wt * response%traction
     call inverse_of_a(metric, curvature, gap, a_inv, status)
     if (status /= ok) return

@@ -30,6 +30,8 @@ module interface_law
     real(wp) :: g_max = 0               !! opening at the strength [length]
     real(wp) :: g_u = 0                 !! opening at which the point is spent [length]
     logical :: reversible = .false.     !! unloading follows the envelope back
+    real(wp) :: offset = 0              !! distance of the surfaces at which the gap is 0: half the
+                                        !! thicknesses of shells [length]; for kernels
   end type gap_law
 
   type :: gap_response

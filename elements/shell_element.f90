@@ -26,6 +26,8 @@ module shell_element
     procedure :: define
     procedure :: sizes
     procedure :: evaluate
+    procedure :: shell_facts
+    procedure :: shell_thickness
     procedure :: output_names
     procedure :: output
   end type shell_element_type
@@ -233,6 +235,22 @@ contains
 
     call shell_force(dshp, frame, area, ue, law, fe, energy, status)
   end subroutine force_of_parts
+
+  pure subroutine shell_facts(self, rigidity, is_linear)
+    class(shell_element_type), intent(in) :: self
+    real(wp), intent(out) :: rigidity     !! E t^3/(12 (1 - nu^2)) [force*length]
+    logical, intent(out) :: is_linear     !! small displacements
+
+    rigidity = self%law%c11*self%law%thickness**3/12
+    is_linear = self%law%is_linear
+  end subroutine shell_facts
+
+  pure function shell_thickness(self) result(thickness)
+    class(shell_element_type), intent(in) :: self
+    real(wp) :: thickness                 !! [length]
+
+    thickness = self%law%thickness
+  end function shell_thickness
 
   pure subroutine output_names(self, names)
     !! Cauchy stress of the middle, top and bottom (and one more) layer [stress], membrane force [force/length],

@@ -150,9 +150,9 @@ contains
     real(wp), intent(out) :: energy
     integer, intent(out) :: status
     type(shell_state) :: now(ng)
-    real(wp) :: n(3,ng), m(3,ng), columns(width,3,3,n_derivatives,ng), sums(width,3,3)
-    integer :: a, block, first, g, i, k, last, q, r
-    real(wp) :: d(width,n_derivatives)
+    real(wp) :: n(3,ng), m(3,ng), d(width,n_derivatives,ng,blocks), columns(width,3,n_derivatives,3,ng)
+    real(wp) :: sums(width,3,width,3)
+    integer :: a, block, first, g, i, k, last, q, r, row_block, row_first
 
     fe = 0
     energy = 0
@@ -169,27 +169,38 @@ contains
       n = 0
       m = 0
     end if
-    ! the functions b by blocks, the rows a one after the other
     do block = 1, blocks
       first = width*(block - 1)
       last = min(width, nen - first)
       do g = 1, ng
         do q = 1, n_derivatives
           do r = 1, last
-            d(r,q) = dshp(q,first + r,g)
+            d(r,q,g,block) = dshp(q,first + r,g)
           end do
           do r = last + 1, width
-            d(r,q) = 0
+            d(r,q,g,block) = 0
           end do
         end do
-        call columns_of(d, now(g), n(:,g), m(:,g), area(g), law, columns(:,:,:,:,g))
       end do
-      do a = first + 1, nen
-        call row_sums(ng, nen, dshp(1,a,1), columns, sums)
-        do r = 1, min(last, a - first)
+    end do
+    ! blocks of functions b, with blocks of rows a from the diagonal on
+    do block = 1, blocks
+      first = width*(block - 1)
+      last = min(width, nen - first)
+      do g = 1, ng
+        call columns_of(d(1,1,g,block), now(g), n(1,g), m(1,g), area(g), law, columns(1,1,1,1,g))
+      end do
+      do row_block = block, blocks
+        row_first = width*(row_block - 1)
+        do k = 1, 3
+          call block_sums(ng, d(1,1,1,row_block), columns(1,1,1,k,1), sums(1,1,1,k))
+        end do
+        do r = 1, last
           do k = 1, 3
-            do i = 1, 3
-              ke(i,a,k,first + r) = sums(r,i,k)
+            do a = max(row_first, first + r - 1) + 1, min(row_first + width, nen)
+              do i = 1, 3
+                ke(i,a,k,first + r) = sums(r,i,a - row_first,k)
+              end do
             end do
           end do
         end do
@@ -197,30 +208,30 @@ contains
     end do
   end subroutine tangent_of
 
-  pure subroutine row_sums(ng, nen, dshp, columns, sums)
-    !! K_ai,bk = sum_gq D_aq z_bikq of one a and a block of b.
-    integer, value :: ng, nen
-    real(wp), intent(in) :: dshp(n_derivatives*nen,*)              !! of all functions, that of a first
-    real(wp), intent(in) :: columns(width,3,3,n_derivatives,ng)    !! z
-    real(wp), intent(out) :: sums(width,3,3)
-    real(wp) :: c(width,3,3)
-    integer :: g, i, k, q, r
+  pure subroutine block_sums(ng, d, columns, sums)
+    !! K_ai,bk = sum_gq D_aq z_bikq of a block of a, a block of b and one k.
+    integer, value :: ng
+    real(wp), intent(in) :: d(width,n_derivatives,ng)              !! D
+    real(wp), intent(in) :: columns(width,3,3*n_derivatives,*)     !! z, that of k first
+    real(wp), intent(out) :: sums(width,3,width)                   !! (b,i,a)
+    real(wp) :: c(width,3,width)
+    integer :: a, g, i, q, r
 
     c = 0
     do g = 1, ng
       do q = 1, n_derivatives
-        do k = 1, 3
+        do a = 1, width
           do i = 1, 3
             !GCC$ unroll 1
             do r = 1, width
-              c(r,i,k) = c(r,i,k) + dshp(q,g)*columns(r,i,k,q,g)
+              c(r,i,a) = c(r,i,a) + d(a,q,g)*columns(r,i,q,g)
             end do
           end do
         end do
       end do
     end do
     sums = c
-  end subroutine row_sums
+  end subroutine block_sums
 
   pure subroutine columns_of(d, now, n, m, area, law, z)
     !! What multiplies the derivatives q of a function a in K_ai,bk at a point, for a block of functions b.
@@ -229,7 +240,7 @@ contains
     real(wp), intent(in) :: n(3), m(3)                  !! forces and moments, times the area of the point
     real(wp), intent(in) :: area                        !! of the point [length^2]
     type(shell_law_type), intent(in) :: law
-    real(wp), intent(out) :: z(width,3,3,n_derivatives) !! z(b,i,k,q)
+    real(wp), intent(out) :: z(width,3,n_derivatives,3) !! z(b,i,q,k)
     real(wp) :: c11, c12, c33, d11, d12, d33, mb, m12, d_11, d_22, d_12, h11, h22, h12, mh, gg1, gg2
     real(wp) :: a1(3), a2(3), a3(3), u1(3), u2(3), gb(width,3), s(width,3,3), y(width,3)
     real(wp) :: v(width,3,3), p(width,3,2), nb(width,2), mhb(width)
@@ -248,6 +259,7 @@ contains
     d33 = c33*law%thickness**2/12
     m12 = 2*m(3)
     mb = m(1)*now%b(1) + m(2)*now%b(2) + m12*now%b(3)
+    !GCC$ unroll 1
     do r = 1, width
       nb(r,1) = n(1)*d(r,1) + n(3)*d(r,2)
       nb(r,2) = n(3)*d(r,1) + n(2)*d(r,2)
@@ -260,6 +272,7 @@ contains
       y(r,3) = 4*d33*h12
     end do
     do k = 1, 3
+      !GCC$ unroll 1
       do r = 1, width
         d_11 = d(r,1)*a1(k)
         d_22 = d(r,2)*a2(k)
@@ -271,6 +284,7 @@ contains
       end do
     end do
     do i = 1, 3
+      !GCC$ unroll 1
       do r = 1, width
         v(r,i,1) = a3(i)*y(r,1) + m(1)*gb(r,i)
         v(r,i,2) = a3(i)*y(r,2) + m(2)*gb(r,i)
@@ -278,6 +292,7 @@ contains
       end do
     end do
     do i = 1, 3
+      !GCC$ unroll 1
       do r = 1, width
         gg1 = u1(1)*gb(r,1) + u1(2)*gb(r,2) + u1(3)*gb(r,3)
         gg2 = u2(1)*gb(r,1) + u2(2)*gb(r,2) + u2(3)*gb(r,3)
@@ -287,20 +302,22 @@ contains
     end do
     do k = 1, 3
       do i = 1, 3
+        !GCC$ unroll 1
         do r = 1, width
           mh = mhb(r)*a3(i)
-          z(r,i,k,1) = a1(i)*s(r,k,1) + a2(i)*s(r,k,3) + p(r,i,1)*a3(k) + mh*u1(k)
-          z(r,i,k,2) = a2(i)*s(r,k,2) + a1(i)*s(r,k,3) + p(r,i,2)*a3(k) + mh*u2(k)
-          z(r,i,k,3) = v(r,i,1)*a3(k)
-          z(r,i,k,4) = v(r,i,2)*a3(k)
-          z(r,i,k,5) = v(r,i,3)*a3(k)
+          z(r,i,1,k) = a1(i)*s(r,k,1) + a2(i)*s(r,k,3) + p(r,i,1)*a3(k) + mh*u1(k)
+          z(r,i,2,k) = a2(i)*s(r,k,2) + a1(i)*s(r,k,3) + p(r,i,2)*a3(k) + mh*u2(k)
+          z(r,i,3,k) = v(r,i,1)*a3(k)
+          z(r,i,4,k) = v(r,i,2)*a3(k)
+          z(r,i,5,k) = v(r,i,3)*a3(k)
         end do
       end do
     end do
     do i = 1, 3
+      !GCC$ unroll 1
       do r = 1, width
-        z(r,i,i,1) = z(r,i,i,1) + nb(r,1)
-        z(r,i,i,2) = z(r,i,i,2) + nb(r,2)
+        z(r,i,1,i) = z(r,i,1,i) + nb(r,1)
+        z(r,i,2,i) = z(r,i,2,i) + nb(r,2)
       end do
     end do
   end subroutine columns_of

@@ -6,7 +6,7 @@ module solid_element
   !!
   !! Its table holds, in this order, dR/dX (ndm,nen,ng) and the volumes of the Gauss points (ng).
   use kinds, only: wp
-  use status_codes, only: ok
+  use status_codes, only: ok, wrong_dimension
   use user_element, only: element_type, element_geometry, element_state, element_energy, property_record, &
     task_prepare, task_tangent
   use gauss_rules, only: tensor_rule
@@ -45,7 +45,6 @@ contains
 
     self%ndm = ndm
     self%ndf = ndm
-    self%dp = ndm
     self%symmetric = .true.
     kind = 0
     mode = merge(three_dimensional, plane_strain, ndm == 3)
@@ -171,7 +170,9 @@ contains
 
     call rule_of(self, geo%degree, n)
     ng = product(n)
-    if (task == task_prepare) then
+    if (task == task_prepare .and. geo%dp /= self%ndm) then
+      status = wrong_dimension
+    else if (task == task_prepare) then
       call prepare(self, geo, n, ng, geo%table, status)
     else
       call from_table(self%law, task, self%ndm, geo%nen, ng, geo%table, state%ue, fe, ke, energy%stored, status)

@@ -8,6 +8,7 @@ module user_element
   !! An element with a symmetric tangent fills only the blocks a >= b (each block complete); `mirror` completes it.
   !! Elements keep no state: what lasts between calls is the host's (`table`, `hist`).
   use kinds, only: wp
+  use symmetric_tangent, only: mirror
   implicit none (type, external)
   private
   public :: element_type, element_geometry, element_state, element_energy, master_facet, property_record
@@ -35,6 +36,8 @@ module user_element
                                                            !! the facet's smooth extension beyond the surface's edge
     logical :: held(2) = .false.                           !! xi rests on a kink of the surface in this direction
     real(wp) :: side = 1                                   !! +1 or -1: the outward normal is side*n
+    real(wp) :: offset = 0                                 !! distance of the surfaces at which the gap is 0: half the
+                                                           !! thicknesses of shells [length]
     real(wp), pointer, contiguous :: we(:) => null()       !! weights (nen)
     real(wp), pointer, contiguous :: ce(:, :) => null()    !! extraction operator (nen,nb)
   end type master_facet
@@ -88,6 +91,8 @@ module user_element
     procedure(evaluate_interface), deferred :: evaluate
     procedure :: begin_history => zero_history
     procedure :: is_bonded => never_bonded
+    procedure :: shell_facts => no_shell_facts
+    procedure :: shell_thickness => no_shell_thickness
     procedure :: output_names => no_output_names
     procedure :: output => no_output
   end type element_type
@@ -150,6 +155,23 @@ contains
     bonded = self%ndf < 0 .and. size(hist) < 0
   end function never_bonded
 
+  pure subroutine no_shell_facts(self, rigidity, is_linear)
+    !! What a joint of shells must know.
+    class(element_type), intent(in) :: self
+    real(wp), intent(out) :: rigidity     !! bending rigidity [force*length]; 0: no shell
+    logical, intent(out) :: is_linear     !! small displacements
+
+    rigidity = 0*self%ndf
+    is_linear = .false.
+  end subroutine no_shell_facts
+
+  pure function no_shell_thickness(self) result(thickness)
+    class(element_type), intent(in) :: self
+    real(wp) :: thickness                 !! [length]; 0: no shell
+
+    thickness = 0*self%ndf
+  end function no_shell_thickness
+
   pure subroutine no_output_names(self, names)
     class(element_type), intent(in) :: self
     character(24), allocatable, intent(out) :: names(:)  !! fields that `output` gives at any point, none by default
@@ -171,20 +193,4 @@ contains
     status = 0
     if (self%ndf < 0 .or. geo%nen < 0 .or. state%dt < 0 .or. size(xi) < 0) status = 1
   end subroutine no_output
-
-  pure subroutine mirror(ke)
-    !! Complete a symmetric tangent of which the blocks a >= b are filled.
-    real(wp), contiguous, intent(inout) :: ke(:, :, :, :)  !! (ndf,nen,ndf,nen)
-    integer :: a, b, i, k
-
-    do b = 2, size(ke, 4)
-      do k = 1, size(ke, 3)
-        do a = 1, b - 1
-          do i = 1, size(ke, 1)
-            ke(i, a, k, b) = ke(k, b, i, a)
-          end do
-        end do
-      end do
-    end do
-  end subroutine mirror
 end module user_element

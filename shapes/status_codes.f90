@@ -9,6 +9,9 @@ module status_codes
   public :: stale_pattern, singular_matrix, not_positive_definite, out_of_memory
   public :: bad_t_mesh, not_suitable, edges_differ
   public :: bond_lost, nothing_bonded
+  public :: outside_patch
+  public :: wrong_dimension
+  public :: side_unknown
   public :: status_text
 
   integer, parameter :: ok = 0
@@ -34,6 +37,9 @@ module status_codes
   integer, parameter :: edges_differ = 20  !! two edges to be merged are not the same curve
   integer, parameter :: bond_lost = 21  !! a bonded point has left the master's edge by more than a facet
   integer, parameter :: nothing_bonded = 22  !! no Gauss point lies in the bonded part of an interface
+  integer, parameter :: outside_patch = 23  !! a slave point has left the master facets that its element knows
+  integer, parameter :: wrong_dimension = 24  !! an element formulation on elements of another dimension
+  integer, parameter :: side_unknown = 25  !! the gap at the start does not tell on which side of a shell the slave is
 
 contains
 
@@ -67,6 +73,10 @@ contains
       'facet. Let the master surface reach farther, or bond less of the slave surface'
     case (nothing_bonded); text = 'no Gauss point of it is bonded: none lies in a BONDed part, outside every UNBOnded '// &
       'part, opposite to the master and nearer to it than the opening at which it is spent'
+    case (outside_patch); text = 'a slave point has left the master facets that its element knows (PATCH)'
+    case (wrong_dimension);     text = 'the element type is made for another parametric dimension (surfaces in space take SHELl)'
+    case (side_unknown); text = 'at the start its points lie on both sides of the master shell, or on none. Write SIDE=1, or '// &
+      'SIDE=-1 where the slave lies on the side that the normal of the master, t_1 x t_2, points away from'
     case default;               text = 'unknown status'
     end select
   end function status_text

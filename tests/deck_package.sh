@@ -9,7 +9,8 @@ compiler() { sed -n "s/^CMAKE_$1_COMPILER:[A-Z]*=//p" "$build/CMakeCache.txt"; }
 cmake --install "$build" --prefix "$PWD/first" >install.txt 2>&1 || { cat install.txt; fail 'the installation failed'; }
 mv first moved
 "$PWD/moved/bin/bezel" --version >/dev/null || fail 'the installed program does not run'
-grep -rl "$PWD/first\|$build" moved/lib moved/include --include='*.cmake' --include='*.pc' | grep . && fail 'the package names its old place'
+grep -rl "$PWD/first\|$build" moved/lib moved/include --include='*.cmake' --include='*.pc' | grep . &&
+  fail 'the package names its old place'
 
 # expected(i,j) of the bilinear square, counter-clockwise from the left bottom: nodes 1, 2, 4, 3 of the element
 awk 'BEGIN {
@@ -45,7 +46,8 @@ project both -DCMAKE_Fortran_COMPILER="$(compiler Fortran)"
 same fortran both/stiffness_fortran
 same c both/stiffness_c
 both/functions || fail 'the shape functions of the package are wrong'
-ldd both/stiffness_fortran both/stiffness_c | grep -iE 'cholmod|umfpack|hdf5|blas|lapack' && fail 'the package needs foreign libraries'
+ldd both/stiffness_fortran both/stiffness_c | grep -iE 'cholmod|umfpack|hdf5|blas|lapack' &&
+  fail 'the package needs foreign libraries'
 project c_alone -DWITH_FORTRAN=OFF
 same c_alone c_alone/stiffness_c
 

@@ -205,10 +205,11 @@ contains
     logical :: halting(size(ieee_all))
     integer :: e, info, n
 
-    n = set%nb(1)
-    allocate (a(n*set%ne,nodes), source=0.0_wp)
+    allocate (a(sum([(set%nb(e), e = 1, set%ne)]),nodes), source=0.0_wp)
+    n = 0
     do e = 1, set%ne
-      a(n*(e-1)+1:n*e,set%connectivity(e)) = transpose(set%operator(e))
+      a(n+1:n+set%nb(e),set%connectivity(e)) = transpose(set%operator(e))
+      n = n + set%nb(e)
     end do
     allocate (s(nodes), work(64*(size(a, 1)+nodes)))
     call unhalted(halting)

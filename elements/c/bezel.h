@@ -109,6 +109,39 @@ int bezel_solid_cauchy(int ndm, int nen, int np, const double *dshp, const doubl
 /* Fills the blocks a < b of ke(ndf,nen,ndf,nen). */
 void bezel_mirror(int ndf, int nen, double *ke);
 
+/* ---- Kirchhoff-Love shells: three displacements a node ---- */
+
+typedef struct {
+  double c11, c12, c33; /* plane stress stiffness [stress] */
+  double nu, thickness;
+  int is_linear; /* 1: small strains and rotations */
+} bezel_shell_law;
+
+int bezel_define_shell_law(double e, double nu, double thickness, int is_linear, bezel_shell_law *law);
+
+/* Once an element: functions shp(nen,ng), derivatives dshp(5,nen,ng) and frames frame(15,ng) in the tangent planes of the start,
+ * reference areas area(ng). The functions must be smooth (C1) within a patch. */
+int bezel_shell_points(const int *degree, int nen, const double *xe, const double *we, const double *ce, int ng,
+                       const double *xi, const double *wt, double *shp, double *dshp, double *frame, double *area);
+
+/* Force, tangent (blocks a >= b) and energy for the displacements ue(3,nen). */
+int bezel_shell_tangent(int nen, int ng, const double *dshp, const double *frame, const double *area, const double *ue,
+                        const bezel_shell_law *law, double *fe, double *ke, double *energy);
+int bezel_shell_force(int nen, int ng, const double *dshp, const double *frame, const double *area, const double *ue,
+                      const bezel_shell_law *law, double *fe, double *energy);
+
+/* Spring [moment per length and angle] against the turning of the angle between two shells A and B along an edge: derivatives
+ * dshp(3,nen,ng) along the conormals of A and of B and along the edge, the three tangents start(3,3,ng), lengths, cosine and sine
+ * of the angle at the start; ke has the blocks a >= b. */
+int bezel_joint_force(int nen, int ng, const double *dshp, const double *start, const double *length, const double *cos_0,
+                      const double *sin_0, double stiffness, int is_linear, const double *ue, double *fe, double *ke,
+                      double *energy);
+
+/* Moment per length on the side 1 to 4 of an element: derivatives dshp(2,nen,ng) and lengths (ng) at points of the edge. fe is
+ * minus the load, ke unsymmetric and complete. */
+int bezel_edge_moment(int side, int nen, int ng, const double *xe, const double *ue, const double *dshp, const double *length,
+                      double moment, double *fe, double *ke);
+
 /* ---- loads; fe is minus the load. shp(nen,ng) and the parametric derivatives dshp(ndm-1,nen,ng) of a side ---- */
 
 /* traction(ndm,ng) per reference area */

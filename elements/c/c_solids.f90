@@ -4,7 +4,7 @@ module c_solids
   use material_laws, only: solid_law, define_solid_law, stress_and_tangent
   use solid_kernel, only: bernstein_table, solid_points, solid_tangent, solid_force, solid_cauchy
   use surface_load, only: dead_traction, dead_pressure, follower_pressure, body_force
-  use user_element, only: mirror
+  use symmetric_tangent, only: mirror
   implicit none (type, external)
   private
   public :: c_solid_law, bezel_define_solid_law, bezel_stress_and_tangent, bezel_solid_points, bezel_solid_tangent, &

@@ -2,8 +2,10 @@ program benchmark
   !! What the parts of the program cost, as lines for tests/benchmark.
   !! benchmark PROJECT SCRATCH: the project's folder, a folder for files that are written and removed.
   use model_benchmarks, only: measure_assembly, measure_system
+  use adapter_benchmarks, only: measure_adapters
   use search_benchmarks, only: measure_search
-  use element_benchmarks, only: measure_solid_kernel, measure_shape_functions, measure_interface_kernel, &
+  use element_benchmarks, only: measure_solid_kernel, measure_shell_kernel, measure_shape_functions, &
+    measure_interface_kernel, &
     measure_projection
   implicit none (type, external)
   integer :: dimension, p, mesh
@@ -19,6 +21,14 @@ program benchmark
       call measure_assembly(trim(scratch), dimension, 'L', p, merge(24, 6, dimension == 2))
       call measure_assembly(trim(scratch), dimension, 'N', p, merge(24, 6, dimension == 2))
     end do
+  end do
+  do dimension = 2, 3
+    do p = 2, 3
+      call measure_adapters(trim(scratch), dimension, p)
+    end do
+  end do
+  do p = 2, 5
+    call measure_shell_kernel(p)
   end do
   do dimension = 2, 3
     do p = 1, 4

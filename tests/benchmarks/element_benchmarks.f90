@@ -1,11 +1,14 @@
 module element_benchmarks
-  !! Solid kernel, shape functions and interface kernel on single elements. Bases are not told apart: to the kernels an
+  !! Solid, shell and interface kernel and shape functions on single elements. Bases are not told apart: to the kernels an
   !! element of Lagrange, NURBS or T-splines is the same.
   use kinds, only: wp
   use status_codes, only: ok
   use solid_samples, only: element, distorted_element, wave
   use material_laws, only: solid_law, define_solid_law, neo_hooke, plane_strain, three_dimensional
   use solid_kernel, only: solid_tangent, solid_force
+  use shell_law, only: shell_law_type, define_shell_law
+  use shell_kernel, only: shell_tangent, shell_force, shell_points, n_derivatives, n_frame
+  use shell_samples, only: shell, curved_shell
   use rational_basis, only: shape_functions
   use interface_law, only: gap_law, gap_response, contact_law
   use gpts_kernel, only: gpts_point
@@ -17,7 +20,8 @@ module element_benchmarks
   use report, only: put, text
   implicit none (type, external)
   private
-  public :: measure_solid_kernel, measure_shape_functions, measure_interface_kernel, measure_projection
+  public :: measure_solid_kernel, measure_shell_kernel, measure_shape_functions, measure_interface_kernel, &
+    measure_projection
 
 contains
 
@@ -59,6 +63,47 @@ contains
     end do
     call put('element', name_of(ndm, p), 'residual and tangent, kernel [us]', 1.0e6_wp*watch%best)
   end subroutine measure_solid_kernel
+
+  subroutine measure_shell_kernel(p)
+    !! St. Venant-Kirchhoff, p + 1 Gauss points a direction.
+    integer, intent(in) :: p
+    type(shell) :: sample
+    type(shell_law_type) :: law
+    type(stopwatch_type) :: watch
+    real(wp), allocatable :: ue(:, :), fe(:, :), ke(:, :, :, :)
+    real(wp) :: energy, wt((p + 1)**2)
+    integer :: a, i, nen, status
+    character(*), parameter :: group = 'shell element'
+
+    sample = curved_shell(p, p + 1)
+    nen = size(sample%we)
+    call define_shell_law(1.0_wp, 0.3_wp, 0.1_wp, .false., law, status)
+    allocate (ue(3, nen), fe(3, nen), ke(3, nen, 3, nen))
+    do a = 1, nen
+      do i = 1, 3
+        ue(i, a) = 0.02_wp*wave(a, 5*i)/p
+      end do
+    end do
+    call watch%begin()
+    do while (watch%goes_on())
+      call shell_force(sample%dshp, sample%frame, sample%area, ue, law, fe, energy, status)
+    end do
+    if (status /= ok) error stop 'element_benchmarks: the sample fails'
+    call put(group, 'p = '//text(p), 'residual, kernel [us]', 1.0e6_wp*watch%best)
+    call watch%begin()
+    do while (watch%goes_on())
+      call shell_tangent(sample%dshp, sample%frame, sample%area, ue, law, fe, ke, energy, status)
+    end do
+    call put(group, 'p = '//text(p), 'residual and tangent, kernel [us]', 1.0e6_wp*watch%best)
+    wt = 1
+    call watch%begin()
+    do while (watch%goes_on())
+      call shell_points(sample%degree, sample%xe, sample%we, sample%ce, sample%xi, wt, sample%shp, sample%dshp, &
+                        sample%frame, sample%area, status)
+    end do
+    call put(group, 'p = '//text(p), 'preparation, once [us]', 1.0e6_wp*watch%best)
+    call put(group, 'p = '//text(p), 'memory of the table [kB]', 8e-3_wp*(p + 1)**2*(n_derivatives*nen + n_frame + 1))
+  end subroutine measure_shell_kernel
 
   subroutine measure_shape_functions(dp, p)
     !! One point: Bernstein values, extraction, weights.

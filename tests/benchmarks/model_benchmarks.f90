@@ -7,7 +7,8 @@ module model_benchmarks
   use equilibrium, only: form_equilibrium
   use path_control, only: path_control_type
   use bulk_elements, only: prepare_bulk, assemble_bulk
-  use interface_points, only: pair_interface, assemble_interface, pair_lists
+  use interface_points, only: pair_interface, assemble_interface
+  use interface_pattern, only: pair_lists
   use user_element, only: element_energy, task_residual, task_tangent
   use run_results, only: run_results_type
   use result_frame, only: named_text_type

@@ -144,12 +144,48 @@ static void surface(int i, row *r) {
   put(r, ke, 4 * ndm * n * ndm * n);
 }
 
+static void shell(int i, row *r) {
+  unsigned state = 313u * i + 7;
+  int p = 2 + i % 2, degree[2] = {p, p}, rule[2] = {p + 1, p + 1}, n, ng = (p + 1) * (p + 1), a, g, k;
+  double we[16], ce[16 * 16], xe[3 * 16], ue[3 * 16], xi[2 * 16], wt[16], shp[16 * 16], dshp[5 * 16 * 16], frame[15 * 16];
+  double area[16], fe[3 * 16], ke[48 * 48], energy, d1[2 * 16 * 16], along[3 * 16 * 16], start[9 * 16], one[16], zero[16];
+  bezel_shell_law law;
+
+  n = element(&state, 2, 3, p, we, ce, xe);
+  bezel_tensor_rule(2, rule, xi, wt);
+  put_int(r, bezel_shell_points(degree, n, xe, we, ce, ng, xi, wt, shp, dshp, frame, area));
+  put(r, area, ng);
+  put(r, dshp, 5 * n * ng);
+  put_int(r, bezel_define_shell_law(100, 0.3, 0.1, i % 3 == 0, &law));
+  for (a = 0; a < 3 * n; a++) ue[a] = 0.02 * next(&state);
+  put_int(r, bezel_shell_tangent(n, ng, dshp, frame, area, ue, &law, fe, ke, &energy));
+  bezel_mirror(3, n, ke);
+  put(r, fe, 3 * n);
+  put(r, ke, 9 * n * n);
+  put_int(r, bezel_shell_force(n, ng, dshp, frame, area, ue, &law, fe, &energy));
+  put(r, fe, 3 * n);
+  put(r, &energy, 1);
+  for (g = 0; g < ng; g++) {
+    put_int(r, bezel_shape_functions(2, degree, n, we, ce, xi + 2 * g, 1, shp, d1 + 2 * n * g, NULL));
+    one[g] = 1;
+    zero[g] = 0;
+    for (k = 0; k < 9; k++) start[k + 9 * g] = next(&state);
+    for (a = 0; a < 3 * n; a++) along[a + 3 * n * g] = next(&state);
+  }
+  put_int(r, bezel_edge_moment(1 + i % 4, n, ng, xe, ue, d1, wt, 2.5, fe, ke));
+  put(r, fe, 3 * n);
+  put(r, ke, 9 * n * n);
+  put_int(r, bezel_joint_force(n, ng, along, start, wt, one, zero, 3, i % 2, ue, fe, ke, &energy));
+  bezel_mirror(3, n, ke);
+  put(r, fe, 3 * n);
+  put(r, ke, 9 * n * n);
+}
+
 static void run(int i, row *r) {
   r->length = 0;
-  if (i % 2)
-    surface(i / 2, r);
-  else
-    solid(i / 2, r);
+  if (i % 3 == 0) solid(i / 3, r);
+  if (i % 3 == 1) surface(i / 3, r);
+  if (i % 3 == 2) shell(i / 3, r);
 }
 
 static void many_threads(int threads) {

@@ -98,7 +98,8 @@ def scenes():
 
 
 groups = measured()
-for group, title in [("element", "one solid element"), ("shape functions", "functions at a point"),
+for group, title in [("element", "one solid element"), ("shell element", "one shell element"),
+                     ("adapter", "one solid element"), ("shape functions", "functions at a point"),
                      ("interface point", "one interface point"), ("search", "master surface"),
                      ("system", "ironing N3")]:
     show(title, groups[group])

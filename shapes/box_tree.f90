@@ -35,7 +35,8 @@ contains
     if (allocated(self%order)) deallocate (self%order, self%first, self%last, self%left, self%lo, self%hi)
     allocate (self%order(nf), self%first(2*nf + 1), self%last(2*nf + 1), self%left(2*nf + 1))
     self%order = [(i, i=1, nf)]
-    centre = transpose(lo + hi)
+    allocate (centre(size(lo, 2), size(lo, 1)))
+    centre(:, :) = transpose(lo + hi)
     self%nnodes = 1
     self%first(1) = 1
     self%last(1) = nf

@@ -15,7 +15,7 @@ module contact_search
   !! `forced` to it for one evaluation, whose linearisation tells whether it stays there.
   use kinds, only: wp
   use status_codes, only: ok, outside_facet
-  use facets, only: facet_surface
+  use surface_facets, only: facet_surface
   use rational_basis, only: shape_functions
   use surface_frame, only: tangent_frame_at
   use box_tree, only: box_tree_type
@@ -35,6 +35,7 @@ module contact_search
     integer :: ndm = 0, dp = 0
     real(wp) :: reach = 0                       !! points farther away stay unpaired [length]
     real(wp) :: side = 1                        !! +1 or -1: the outward normal is side*n
+    real(wp) :: offset = 0                      !! distance of the surfaces at which they touch [length]
     integer :: moved = 0                        !! counts the positions of the master
     integer :: searches = 0                     !! global searches since the start
     real(wp), allocatable :: x(:, :)            !! current position of every node (ndm,nn) [length]
@@ -242,7 +243,7 @@ contains
 
     crosses = .false.
     call normal_at(from, xi_from, x, nrm)
-    if (search%side*dot_product(xs - x, nrm) >= 0) return
+    if (search%side*dot_product(xs - x, nrm) >= search%offset) return
     at = xi_to
     do s = 1, size(surface%neighbour, 1)
       if (surface%neighbour(s, to) == from) at((s + 1)/2) = merge(0.0_wp, 1.0_wp, mod(s, 2) == 1)

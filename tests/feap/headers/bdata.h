@@ -1,0 +1,2 @@
+character(4) :: o, head
+common /bdata/ o, head(20)

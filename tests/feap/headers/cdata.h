@@ -1,0 +1,2 @@
+integer :: numnp, numel, nummat, nen, neq, ipr, netyp
+common /cdata/ numnp, numel, nummat, nen, neq, ipr, netyp

@@ -1,0 +1,2 @@
+character(256) :: record
+common /comrec/ record

@@ -1,0 +1,2 @@
+integer :: starnd, starel
+common /dstars/ starnd, starel

@@ -1,0 +1,2 @@
+integer(8) :: np, up
+common /pointer/ np(400), up(200)

@@ -1,0 +1,2 @@
+integer :: nreg, mxreg
+common /region/ nreg, mxreg

@@ -1,0 +1,2 @@
+integer :: ndf, ndm, nen1, nst, nneq, ndl
+common /sdata/ ndf, ndm, nen1, nst, nneq, ndl

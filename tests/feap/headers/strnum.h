@@ -1,0 +1,2 @@
+integer :: istv, iste, istp, istc
+common /strnum/ istv, iste, istp, istc
