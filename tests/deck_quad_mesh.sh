@@ -76,6 +76,14 @@ expect again tip_uz "$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "t
 solve sphere "$verify/sphere_pressure.inp" n=2
 expect sphere elastic 0.0219911 3e-7
 
+# The first steps of the two problems of the paper; both are symmetric about a plane x = const.
+solve triangle "$BEZEL_SOURCE/inputs/peel_triangle.inp" n=2 last=1
+expect triangle corner_rx 0 1e-10
+expect triangle corner_uz 0.02 1e-14
+solve hemispheres "$BEZEL_SOURCE/inputs/hemispheres.inp" n=2 last=1
+expect hemispheres rim_rx 0 1e-10
+expect hemispheres rim_uz -0.0133333333333333 1e-14
+
 # A mesh of triangles.
 cat >wrong.inp <<'EOF'
 FEAP * * a triangle
