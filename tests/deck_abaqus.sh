@@ -51,6 +51,8 @@ job peel "$BEZEL_SOURCE/inputs/abaqus/peel_deck.inp"
 agrees peel upper_left 'pull_ux pull_uy pull_rx pull_ry'
 job arc "$BEZEL_SOURCE/inputs/abaqus/arc_deck.inp"
 agrees arc arc_right 'end_ux end_uy end_uz end_rx end_ry end_rz'
+job plates "$BEZEL_SOURCE/inputs/abaqus/plates_deck.inp"     # faces of shells in contact
+agrees plates upper_left 'edge_ux edge_uy edge_uz edge_rx edge_ry edge_rz'
 job ironing "$BEZEL_SOURCE/inputs/ironing.inp" basis=N last=23 iga=1
 agrees ironing die_top 'top_ux top_uy top_rx top_ry'
 # T-splines: elements of many numbers of nodes, so many types
@@ -100,6 +102,11 @@ bad peel 's/MASTER=lower.top/MASTER=lower.up/' peel.bezel
 refused 'peel.bezel, line 4' 'lower.up' 'Known:' 'lower.top'
 bad peel 's/PATCH=0.5/PATCH=0.01/' peel.bezel
 refused 'user element 1001 has' 'nodes' 'bezel_abaqus'
+
+bad plates 's/SLAVE=upper/SLAVE=upper.left/' plates.bezel
+refused 'plates.bezel, line 4' 'no surface "upper.left"' 'Known: lower upper'
+bad plates 's/THICKNESS=0.1/THICKNESS=-1/' plates.bezel
+refused 'plates.bezel, line 4' 'THICKNESS='
 
 # An element that turns inside out asks for a smaller increment; the host goes on and arrives.
 bad block 's/^1., 10./1., 1./; s/-0.2$/-0.7/' block.inp

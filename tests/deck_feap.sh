@@ -212,6 +212,68 @@ awk '$1 == "time" { if (n++) print p; p = 0 } $1 >= 216 && ($1 - 216) % 43 == 0 
       printf "dcb: step %d, difference from the driver %.1e\n", n, a } END { exit wrong || n != 2 }' ||
   fail 'dcb: host and driver differ'
 
+# Shells in contact by their faces.
+cat >Iplates <<'DECK'
+FEAP * * a shell pressed on another one
+0 0 0 3 3 0
+
+T-SPline MATErial=1
+  FILE="plates.out/plates.iga"
+
+CONTact SLAVe=upper MASTer=lower MATErial=2 GP=2 THICkness=0.1
+
+EBOUndary
+  1 0.0  1 1 1
+  1 1.0  1 1 1
+
+DISPlacement
+   17 5  0 0 -0.04
+   37 0  0 0 -0.04
+   21 5  0 0 -0.04
+   41 0  0 0 -0.04
+
+MATErial 1
+  BEZShell
+  ELAStic STVK 1000 0.3
+  THICkness 0.1
+
+MATErial 2
+  GPTS
+  PENAlty 1e3
+
+END
+
+BATCh
+  PROP,,1
+  NOPRint
+  TOL,,1e-24
+  DT,,1
+  LOOP,,5
+    TIME
+    LOOP,,20
+      PAIR
+      TANG,,1
+    NEXT
+    PAIR
+    REAC,FILE
+    NODAl,plates.dat
+  NEXT
+END
+2 1
+0 0
+5 1
+
+STOP
+DECK
+"$BEZEL" "$BEZEL_SOURCE/inputs/abaqus/plates_deck.inp" --out plates.out >driver.txt 2>&1 || fail 'plates: the driver fails'
+runs Iplates
+awk '$1 == "time" { if (n++) print p, q; p = q = 0; next } $1 > 16 && $1 % 5 == 2 { p += $5; q += $7 } END { print p, q }' CONVFMT=%.16g \
+  OFMT=%.16g plates.dat | paste -d ' ' - <(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
+    { print $at["edge_rx"], $at["edge_rz"] }' plates.out/history.csv) | awk '{ n++; for (k = 1; k <= 2; k++) {
+      a = $k - $(k + 2); a = a < 0 ? -a : a; if (a > worst) worst = a }; last = $2 }
+    END { printf "plates: %d steps, largest difference from the driver %.1e\n", n, worst; exit n != 5 || !(worst < 1e-8 && last < -0.9) }' ||
+  fail 'plates: host and driver differ'
+
 # Faults: the host's error, with the element and a remedy.
 refuses() { # refuses LABEL SED TEXT [DECK]
   sed "$2" "${4:-Ipatch_explicit}" >Ibad
@@ -228,6 +290,8 @@ refuses 'missing file'    's/patch_t.iga/nofile.iga/' 'nofile.iga: the file cann
 sed '40,60d' patch_t.iga >short.iga
 refuses 'damaged file'    's/patch_t.iga/short.iga/' 'short.iga:' Ipatch_t
 refuses 'unknown surface' 's/MASTer=lower.top/MASTer=lower.tip/' 'there is no surface "lower.tip". Known surfaces: lower.left' Idcb
+refuses 'edge of a shell' 's/SLAVe=upper/SLAVe=upper.left/' 'CONTact: "upper.left" or "lower" is no surface' Iplates
+refuses 'negative thickness' 's/THICkness=0.1$/THICkness=-0.1/' 'not negative' Iplates
 cat >Iplain <<'DECK'
 FEAP * * an element without operator
 0 0 0 2 2 0

@@ -198,6 +198,7 @@ contains
         return
       end if
       geo%master%side = it%side
+      geo%master%offset = it%offset
     end associate
 
     fe = 0

@@ -6,11 +6,13 @@ module abaqus_job
   !!     SOLID      FIRST=1                     the mesh's elements are user elements FIRST, FIRST+1, ...
   !!     SHELL      FIRST=1                     the same, of surfaces in space
   !!     INTERFACE  FIRST=10001 SLAVE=die.bottom MASTER=slab.top PATCH=0.3 GP=2 [SIDE=-1] [REACH=0.2]
+  !!                [THICKNESS=0.1]         the gap is that of the faces of shells: half the thicknesses of both
   !!
   !! A user element is a mesh element with its nodes in their order, or a facet of SLAVE with its nodes and then those of
   !! the master facets nearer than PATCH at the start, each once. Read-only after that, but for each element's own table.
   use kinds, only: wp
-  use extraction_mesh, only: extraction_mesh_type, problem_list, set_of_sides, whole_number
+  use extraction_mesh, only: extraction_mesh_type, problem_list, set_of_elements, set_of_sides, &
+    whole_number
   use extraction_file, only: read_extraction_file, load_text
   use text_scanner, only: scanner_type
   use number_text, only: read_number
@@ -38,6 +40,7 @@ module abaqus_job
     type(facet_surface) :: slave, master
     integer :: first = 0, gp = 0
     real(wp) :: patch = 0, reach = 0, side = 1
+    real(wp) :: offset = 0                       !! distance of mid-surfaces whose shells touch [length]
   end type interface_place
 
   type :: job_type
@@ -113,12 +116,11 @@ contains
           if (any(job%mesh%elements%dp(1:job%mesh%elements%ne) /= 2)) fault = at_line(scanner)// &
             'shells are surfaces, but the mesh has volumes: write SOLID'
           job%ndm = 3
+          if (size(job%interfaces) > 0) fault = at_line(scanner)//'SHELL stands before INTERFACE'
         end if
       case ('INTERFACE')
         if (job%ndm == 0) then
           fault = at_line(scanner)//'INTERFACE stands behind MESH'
-        else if (job%bulk_kind == shell_kind) then
-          fault = at_line(scanner)//'interfaces are between solids'
         else
           call read_interface(scanner, job, fault)
         end if
@@ -157,33 +159,43 @@ contains
       new%reach = real_option(scanner, 'REACH', new%patch)
       new%gp = nint(real_option(scanner, 'GP', 0.0_wp))
       new%side = real_option(scanner, 'SIDE', 1.0_wp)
+      new%offset = real_option(scanner, 'THICKNESS', 0.0_wp)
       if (new%first < 1 .or. new%gp < 1 .or. .not. new%patch > 0) then
         fault = at_line(scanner)//'INTERFACE takes FIRST=number SLAVE=set MASTER=set PATCH=length GP=points'
         return
+      else if (new%offset < 0) then
+        fault = at_line(scanner)//'THICKNESS= is half the thicknesses of both shells, a number that is not negative'
+        return
       end if
-      call make_surface(job%mesh, slave, new%slave, fault)
-      if (.not. allocated(fault)) call make_surface(job%mesh, master, new%master, fault)
+      call make_surface(job%mesh, job%ndm, slave, new%slave, fault)
+      if (.not. allocated(fault)) call make_surface(job%mesh, job%ndm, master, new%master, fault)
     end associate
     if (allocated(fault)) fault = at_line(scanner)//fault
   end subroutine read_interface
 
-  subroutine make_surface(mesh, name, surface, fault)
+  subroutine make_surface(mesh, ndm, name, surface, fault)
+    !! A set of sides of solids, or of shells.
     type(extraction_mesh_type), intent(in), target :: mesh
+    integer, intent(in) :: ndm                             !! space dimension
     character(*), intent(in) :: name
     type(facet_surface), intent(out) :: surface
     character(:), allocatable, intent(inout) :: fault
     character(:), allocatable :: known
+    integer, allocatable :: sides(:)
     integer :: i
 
     known = ''
     do i = 1, size(mesh%sets)
-      if (mesh%sets(i)%kind /= set_of_sides) cycle
+      if (all(mesh%sets(i)%kind /= [set_of_sides, set_of_elements])) cycle
+      sides = spread(0, 1, size(mesh%sets(i)%items))
+      if (mesh%sets(i)%kind == set_of_sides) sides = mesh%sets(i)%sides
+      if (any(mesh%elements%dp(mesh%sets(i)%items) - merge(1, 0, sides > 0) /= ndm - 1)) cycle
       known = known//' '//mesh%sets(i)%name
       if (mesh%sets(i)%name /= name) cycle
-      call build_surface_facets(mesh%elements, mesh%sets(i)%items, mesh%sets(i)%sides, surface)
+      call build_surface_facets(mesh%elements, mesh%sets(i)%items, sides, surface)
       return
     end do
-    fault = 'the mesh has no set of sides "'//name//'". Known:'//known
+    fault = 'the mesh has no surface "'//name//'". Known:'//known
   end subroutine make_surface
 
   subroutine make_places(job, fault)
@@ -230,6 +242,7 @@ contains
             end if
             allocate (new%patch)
             call cut_patch(it%master, near, job%ndm, it%reach, it%side, new%nodes, new%patch)
+            new%patch%search%offset = it%offset
             new%we = job%mesh%w(new%nodes)
             if (size(new%nodes) > most_nodes) fault = 'interface element '//whole_number(it%first + f - 1)//' has '// &
               whole_number(size(new%nodes))//' nodes, more than the '//whole_number(most_nodes)//' of a user element; '// &

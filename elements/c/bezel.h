@@ -164,6 +164,7 @@ typedef struct {
   double g_max;   /* opening at the strength */
   double g_u;     /* opening at which the point is spent */
   int reversible; /* 1: unloading follows the envelope back */
+  double offset;  /* the kernels subtract it from the gap: half the thicknesses of two shells; 0 from the functions below */
 } bezel_gap_law;
 
 typedef struct {

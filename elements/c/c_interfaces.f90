@@ -14,6 +14,7 @@ module c_interfaces
     !! bezel_gap_law of the header.
     real(c_double) :: penalty, p_max, g_max, g_u
     integer(c_int) :: reversible
+    real(c_double) :: offset
   end type c_gap_law
 
   type, bind(c) :: c_gap_response
@@ -32,13 +33,14 @@ contains
     own%g_max = law%g_max
     own%g_u = law%g_u
     own%reversible = law%reversible /= 0
+    own%offset = law%offset
   end function law_of
 
   elemental function c_law_of(own) result(law)
     type(gap_law), intent(in) :: own
     type(c_gap_law) :: law
 
-    law = c_gap_law(own%penalty, own%p_max, own%g_max, own%g_u, merge(1, 0, own%reversible))
+    law = c_gap_law(own%penalty, own%p_max, own%g_max, own%g_u, merge(1, 0, own%reversible), own%offset)
   end function c_law_of
 
   elemental function c_response_of(own) result(response)

@@ -10,6 +10,7 @@ module feap_contact
   use contact_search, only: master_search, start_search, move_master, pair_point
   use user_element, only: element_geometry, element_state, element_energy, mirror, task_prepare, task_tangent
   use feap_host, only: fail
+  use feap_arrays, only: space_dimension
   use feap_materials, only: of_material
   use feap_mesh, only: pass, mesh, find_surface, weights_of
   implicit none (type, external)
@@ -28,6 +29,7 @@ module feap_contact
     integer :: np = 0, gp = 0                !! points; per direction of a facet
     integer :: material = 0
     real(wp) :: side = 1, reach = 0
+    real(wp) :: offset = 0                   !! distance of mid-surfaces whose shells touch [length]
     type(facet_surface) :: slave, master
     type(master_search) :: search
     type(bond_box), allocatable :: boxes(:)
@@ -45,11 +47,12 @@ module feap_contact
 
 contains
 
-  subroutine add_interface(slave, master, gp, side, reach, material, first, boxes, np)
+  subroutine add_interface(slave, master, gp, side, reach, offset, material, first, boxes, np)
     character(*), intent(in) :: slave, master    !! names of surfaces
     integer, intent(in) :: gp                    !! Gauss points per direction
     real(wp), intent(in) :: side                 !! +1 or -1: the master's outward normal is side*n
-    real(wp), intent(in) :: reach                !! search distance, 0: twice the longest facet [length]
+    real(wp), intent(in) :: reach                !! search distance, 0: offset and twice the longest facet [length]
+    real(wp), intent(in) :: offset               !! distance of the surfaces at which the gap is 0 [length]
     integer, intent(in) :: material, first       !! of its elements; number of the first
     type(bond_box), intent(in) :: boxes(:)
     integer, intent(out) :: np                   !! points, each an element
@@ -73,10 +76,13 @@ contains
       call build_surface_facets(mesh, elements, sides, it%master)
       if (it%slave%set%ne == 0 .or. it%master%set%ne == 0) &
         call fail('CONTact: surface "'//slave//'" or "'//master//'" has no elements')
-      dp = it%slave%set%dp(1)
+      dp = space_dimension() - 1
+      if (any(it%slave%set%dp(1:it%slave%set%ne) /= dp) .or. any(it%master%set%dp(1:it%master%set%ne) /= dp)) &
+        call fail('CONTact: "'//slave//'" or "'//master//'" is no surface (of solids their sides, of shells the elements)')
       it%gp = gp
       it%side = side
       it%reach = reach
+      it%offset = offset
       it%material = material
       it%first = first
       it%np = it%slave%set%ne*gp**dp
@@ -188,9 +194,10 @@ contains
         if (status /= ok) call fail('slave facet '//whole_number(k)//' of an interface: '//status_text(status))
       end do
       reach = it%reach
-      if (.not. reach > 0) reach = 2*max(longest_facet(it%slave, x), longest_facet(it%master, x))
+      if (.not. reach > 0) reach = it%offset + 2*max(longest_facet(it%slave, x), longest_facet(it%master, x))
       call start_search(it%search, geo%ndm, it%master, reach)
       it%search%side = it%side
+      it%search%offset = it%offset
       it%facet = 0
       it%xi = 0.5_wp
       it%held = .false.
@@ -337,6 +344,7 @@ contains
     geo%table => it%table(:, i)
     geo%master%nen = nm
     geo%master%side = it%side
+    geo%master%offset = it%offset
     if (nm > 0) then
       we(ns + 1:nel) = w(it%master%set%connectivity(it%facet(i)))
       geo%master%degree = it%master%set%degree(1:2, it%facet(i))

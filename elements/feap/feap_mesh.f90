@@ -37,9 +37,11 @@ contains
     last_element = 0
   end subroutine begin_pass
 
-  subroutine add_file(path, first_node, first_element, file)
-    !! Nodes, elements and sets of a file, numbered on from those before.
+  subroutine add_file(path, ndm, first_node, first_element, file)
+    !! Nodes, elements and sets of a file, numbered on from those before. Its sets of elements are surfaces, if these are
+    !! shells.
     character(*), intent(in) :: path
+    integer, intent(in) :: ndm                           !! space dimension
     integer, intent(in) :: first_node, first_element     !! least numbers, as *NOD and *ELE have it
     type(extraction_mesh_type), intent(out), target :: file
     type(problem_list) :: problems
@@ -64,6 +66,9 @@ contains
     do e = 1, size(file%sets)
       if (file%sets(e)%kind == set_of_sides) &
         call add_surface(file%sets(e)%name, file%sets(e)%items + element_shift, file%sets(e)%sides)
+      if (file%sets(e)%kind /= set_of_elements) cycle
+      if (all(file%elements%dp(file%sets(e)%items) == ndm - 1)) &
+        call add_surface(file%sets(e)%name, file%sets(e)%items + element_shift, spread(0, 1, size(file%sets(e)%items)))
     end do
     last_node = node_shift + file%nn
   end subroutine add_file

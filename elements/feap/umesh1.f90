@@ -5,7 +5,7 @@ subroutine umesh1(tx, prt)
   use extraction_mesh, only: extraction_mesh_type, set_of_elements, set_of_nodes, whole_number
   use feap_host, only: this_record, record_length, fail, note
   use feap_items, only: item_list, split_record, read_items
-  use feap_arrays, only: is_counting, first_free, count_mesh, store_node, store_element
+  use feap_arrays, only: is_counting, first_free, count_mesh, space_dimension, store_node, store_element
   use feap_mesh, only: begin_pass, add_file, mesh, element_of, last_node, last_element
   implicit none
   character(15), intent(in) :: tx(*)      ! FEAP's items: they hold but 15 letters
@@ -46,7 +46,7 @@ subroutine umesh1(tx, prt)
   if (path == '') call fail('T-SPline: the file is missing. Write FILE="name.iga" behind T-SPline or in the next record')
 
   call first_free(node, element)
-  call add_file(path, node, element, file)
+  call add_file(path, space_dimension(), node, element, file)
   nodes_before = last_node - file%nn
   element = last_element - file%elements%ne
   allocate (material(file%elements%ne), source=material_of_all)

@@ -1,6 +1,7 @@
 subroutine umesh5(tx, prt)
-  !! Mesh command CONTact SLAVe=surface MASTer=surface MATErial=m [GP=n] [SIDE=-1] [REACh=r]: an element for each Gauss
-  !! point of the slave surface. Records follow, to a blank one: BONDed or UNBOnded BOX x1 x2 y1 y2 [z1 z2], the part of a
+  !! Mesh command CONTact SLAVe=surface MASTer=surface MATErial=m [GP=n] [SIDE=-1] [REACh=r] [THICkness=d]: an element
+  !! for each Gauss point of the slave surface. THICkness: the gap is that of the faces of shells, d half the thicknesses
+  !! of both. Records follow, to a blank one: BONDed or UNBOnded BOX x1 x2 y1 y2 [z1 z2], the part of a
   !! cohesive interface that is bonded or cracked from the start; SLAVe=surface, MASTer=surface, as FEAP's own command
   !! records hold names of 15 letters only.
   use kinds, only: wp
@@ -21,7 +22,7 @@ subroutine umesh5(tx, prt)
   real(wp), allocatable :: bounds(:)
   type(bond_box) :: box
   character(:), allocatable :: slave_name, master_name
-  real(wp) :: side, reach, margin
+  real(wp) :: side, reach, offset, margin
   integer :: slave, master, material, place, gp, np, first, node, e, i
   logical, external :: pcomp
 
@@ -44,6 +45,9 @@ subroutine umesh5(tx, prt)
   if (items%find('side') > 0) side = sign(1.0_wp, items%number(items%find('side')))
   reach = 0
   if (items%find('reac') > 0) reach = items%number(items%find('reac'))
+  offset = 0
+  if (items%find('thic') > 0) offset = items%number(items%find('thic'))
+  if (offset < 0) call fail('CONTact: THICkness is half the thicknesses of both shells, not negative')
   call first_free(node, first)
   first = max(first, last_element + 1)
   slave_name = items%text(slave)
@@ -68,7 +72,7 @@ subroutine umesh5(tx, prt)
   end do
   if (slave_name == '' .or. master_name == '') &
     call fail('CONTact: write SLAVe=surface and MASTer=surface behind CONTact or in records of their own')
-  call add_interface(slave_name, master_name, gp, side, reach, material, first, boxes, np)
+  call add_interface(slave_name, master_name, gp, side, reach, offset, material, first, boxes, np)
   last_element = first + np - 1
   if (is_counting()) then
     call count_mesh(last_node, last_element, largest_pair())

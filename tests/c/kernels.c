@@ -254,6 +254,24 @@ static void failures_are_told(void) {
   expect(strlen(little) == 5, "a short text is cut");
 }
 
+/* A point 0.11 above a straight line from (0,0) to (-1,0), whose normal points up: the gap is that of faces 0.125 apart. */
+static void offset_shifts_the_gap(void) {
+  double shp_s[1] = {1}, xs[2] = {-0.5, 0.11}, shp_m[2] = {0.5, 0.5}, dshp_m[2] = {-1, 1}, d2shp_m[2] = {0, 0};
+  double xm[4] = {0, 0, -1, 0}, fe[6], ke[36];
+  bezel_gap_law law;
+  bezel_gap_response plain, shifted;
+
+  expect(bezel_contact_law(1e3, &law) == 0 && law.offset == 0, "a law has no offset of itself");
+  expect(bezel_gpts_point(2, 1, shp_s, xs, 2, shp_m, dshp_m, d2shp_m, xm, 1, &law, 0, 1, 1, &plain, fe, ke) == 0,
+         "a point above");
+  law.offset = 0.125;
+  expect(bezel_gpts_point(2, 1, shp_s, xs, 2, shp_m, dshp_m, d2shp_m, xm, 1, &law, 0, 1, 1, &shifted, fe, ke) == 0,
+         "a point between");
+  expect(fabs(plain.gap - 0.11) < 1e-15 && plain.traction == 0, "without offset the point is free");
+  expect(fabs(shifted.gap + 0.015) < 1e-15 && fabs(shifted.traction + 15) < 1e-11 && fabs(fe[1] + 15) < 1e-11,
+         "the offset shifts the gap");
+}
+
 static void sides_are_directed(void) {
   int degree[2] = {2, 1}, side_degree[1], rows[6], n, k;
   double ce[36] = {0}, ce_side[36];
@@ -268,6 +286,7 @@ int main(int argc, char **argv) {
   known_stiffness();
   failures_are_told();
   sides_are_directed();
+  offset_shifts_the_gap();
   many_threads(argc > 1 ? atoi(argv[1]) : 32);
   printf("%d failures\n", failures);
   return failures != 0;
