@@ -41,6 +41,8 @@ module analysis
     integer :: dt_count = 0              !! TIMEs since then: n*dt has no rounding to add up
     integer :: step = 0                  !! steps asked for so far
     integer :: resumed_step = 0          !! steps that a restart has behind it
+    integer :: times = 0                 !! TIMEs met, those that a finished path skips too
+    logical :: caught_up = .true.        !! a restart has come to the state that it goes on from
     integer :: steps_in_all = 0
     integer :: iterations = 0, cutbacks = 0
     logical :: print_iterations = .false.
@@ -92,6 +94,7 @@ contains
         code = exit_deck
         return
       end if
+      run%caught_up = run%path%times == 0
       call results%resume(model, provenance, run%resumed_step, run%eq%time_n)
       call log%put('restart after step '//text(run%resumed_step)//', time '//number(run%eq%time_n))
     else
@@ -159,6 +162,7 @@ contains
         case (do_path)
           call set_path(command, run, results)
         case (do_time)
+          run%times = run%times + 1
           if (path_is_done(run)) then
             at = at + 1
             cycle
@@ -213,14 +217,15 @@ contains
     type(run_results_type), intent(inout) :: results
 
     results%time_is_step = results%time_is_step .or. command%count /= path_off
-    if (run%step >= run%resumed_step) then
+    if (run%caught_up) then
       call start_path(run%path, command%count, command%value(1))
       run%path%most_length = command%value(2)
       run%path%until = command%value(3)
       run%path%wanted_iterations = command%other
       run%path%began = run%eq%time_n
     end if
-    run%dt_began = run%path%began     ! for TIMEs after PATH OFF
+    run%target_time = run%path%began  ! for TIMEs after PATH OFF
+    run%dt_began = run%path%began
     run%dt_count = 0
   end subroutine set_path
 
@@ -229,7 +234,7 @@ contains
     type(run_state), intent(in) :: run
     logical :: yes
 
-    yes = run%path%asked /= path_off .and. run%step >= run%resumed_step .and. run%eq%time_n >= run%path%until
+    yes = run%path%asked /= path_off .and. run%caught_up .and. run%eq%time_n >= run%path%until
   end function path_is_done
 
   pure function is_newton_loop(program, at) result(yes)
@@ -259,6 +264,11 @@ contains
       run%target_time = run%target_time + run%dt
       run%step = 1
       run%steps_in_all = 1
+    end if
+    if (.not. run%caught_up) then
+      run%caught_up = run%times == run%path%times
+      if (run%caught_up) run%step = run%resumed_step
+      return
     end if
     if (run%step <= run%resumed_step) return
     before = run%eq%time_n
@@ -298,6 +308,7 @@ contains
     call results%add_row(model, run%eq, run%step, report%iterations, report%cutbacks)
     if (results%wants_fields(model, run%step, run%eq%time_n)) call results%write_fields(model, run%eq, run%step)
     if (model%outputs%restart_every > 0) then
+      run%path%times = run%times
       if (mod(run%step, model%outputs%restart_every) == 0) call results%write_state(run%eq, run%control, run%path, run%step)
     end if
     call clock%stop(phase_output)
@@ -329,6 +340,7 @@ contains
 
     call clock%start(phase_output)
     if (model%outputs%fields .and. results%last_field_step /= run%step) call results%write_fields(model, run%eq, run%step)
+    run%path%times = run%times - (run%step - whole_steps)
     if (model%outputs%restart_every > 0) call results%write_state(run%eq, run%control, run%path, whole_steps)
     call clock%stop(phase_output)
   end subroutine leave_last_state

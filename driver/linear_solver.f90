@@ -50,8 +50,6 @@ module linear_solver
     type(cholesky_factor_type), private :: cholesky
     type(lu_factor_type), private :: lu
     integer, private :: epoch = -1, n = -1, nnz = -1, ordered_by = -1
-    integer, private :: failures = 0          !! of CHOLMOD, one after another
-    integer, private :: skips = 0             !! factorisations for which it is not tried
     integer, allocatable, private :: perm(:)
     integer, allocatable, private :: full_ptr(:), full_ind(:), source(:)  !! both triangles of a symmetric matrix
     real(wp), allocatable, private :: full_values(:)
@@ -234,12 +232,8 @@ contains
           statistics%rcond = self%cholesky%rcond
           statistics%determinant_sign = 1
           statistics%negative_pivots = 0
-          self%failures = 0
         else if (status == not_positive_definite .and. self%backend == backend_auto) then
-          ! an unstable path stays unstable for a while: CHOLMOD is tried less and less often
           statistics%fallbacks = statistics%fallbacks + 1
-          self%failures = min(self%failures + 1, 5)
-          self%skips = 2**(self%failures - 1) - 1
           call self%factorise_lu(matrix, status)
         end if
       else
@@ -335,8 +329,6 @@ contains
     if (allocated(self%source)) deallocate (self%full_ptr, self%full_ind, self%source)
     if (allocated(self%full_values)) deallocate (self%full_values)
     self%epoch = -1
-    self%failures = 0
-    self%skips = 0
     self%statistics%determinant_sign = 0
   end subroutine release
 

@@ -38,6 +38,7 @@ module path_control
     integer :: mode = by_time               !! of the next increment
     integer :: mode_done = by_time          !! of the last one
     real(wp) :: began = 0                   !! load time when this control was set
+    integer :: times = 0                    !! TIMEs of the deck behind the committed state, for a restart
     integer :: wanted_iterations = 6        !! increments grow below, shrink above
     real(wp) :: until = huge(1.0_wp)        !! the path ends where the load time first reaches this
     real(wp) :: most_time = 1               !! largest change of the load time in an increment
@@ -65,6 +66,9 @@ contains
     integer, intent(in) :: asked
     real(wp), intent(in) :: length        !! first arc or dissipated energy; 0: what the first increment by time gives
 
+    if (allocated(path%along)) deallocate (path%along)
+    path%has_sign = .false.
+    path%unstable = .false.
     path%asked = asked
     path%time_step = 0
     path%mode = by_time
@@ -124,10 +128,12 @@ contains
     type(step_report), intent(inout) :: report
     integer, intent(out) :: status
     type(path_constraint) :: constraint
+    real(wp) :: t_new
 
     if (path%mode == by_time) then
-      call solve_increment(model, eq, settings, min(eq%time_n + path%time_step, path%until), control%rate, .false., &
-                           clock, report%last, status)
+      t_new = eq%time_n + path%time_step
+      if (t_new > path%until - 1.0e-6_wp*path%time_step) t_new = path%until   ! no last step of rounding
+      call solve_increment(model, eq, settings, t_new, control%rate, .false., clock, report%last, status)
       return
     end if
     constraint%kind = merge(path_arc, path_dissipation, path%mode == by_arc)
@@ -203,6 +209,13 @@ contains
     logical, intent(in) :: ends          !! nothing is left to dissipate
     logical :: found
 
+    if (path%asked == by_dissipation .and. path%mode == by_time .and. .not. path%nothing_left) then
+      path%mode = by_dissipation       ! nothing has dissipated yet: begin with an estimate
+      path%dissipation = min(1.0e-2_wp*eq%energies_n%elastic, path%most_length)
+      path%nothing_left = .true.       ! and only once
+      found = path%dissipation > 0
+      return
+    end if
     found = path%asked == path_auto .and. .not. (path%mode == by_arc .and. path%nothing_left)
     if (.not. found) return
     if (path%mode == by_arc) then   ! a point that broke while everything else unloaded: the path turns forward

@@ -129,7 +129,7 @@ contains
         dt = constraint%forward_time
         if (abs(g) < abs(slope)*constraint%most_time) then
           dt = -g/slope
-        else if (k > 1) then
+        else if (k > 1 .or. abs(slope) > 0) then
           dt = sign(constraint%most_time, -g*slope)
         end if
       end if

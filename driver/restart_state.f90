@@ -154,7 +154,8 @@ contains
 
     call store%write('/path_numbers', [following%asked, following%mode, following%mode_done, &
       following%wanted_iterations, merge(1, 0, following%has_sign), following%sign, following%negative, &
-      following%limit_points, merge(1, 0, following%unstable), following%first_sign, following%first_negative])
+      following%limit_points, merge(1, 0, following%unstable), following%first_sign, following%first_negative, &
+      following%times])
     call store%write('/path_sizes', [following%began, following%until, following%most_time, following%most_length, &
       following%time_step, following%arc, following%dissipation, following%along_time])
     if (allocated(following%along)) then
@@ -186,6 +187,7 @@ contains
     following%unstable = n(9) == 1
     following%first_sign = n(10)
     following%first_negative = n(11)
+    following%times = n(12)
     following%began = x(1)
     following%until = x(2)
     following%most_time = x(3)

@@ -175,6 +175,8 @@ contains
       end do
     end do
     do b = 1, nen
+      ! gfortran 12 vectorises this over g with loads beyond the last point, which may lie beyond the host's memory
+      !GCC$ novector
       do g = 1, ng
         call contract(ndm, a(1,1,1,1,g), dshp(1,b,g), h(1,1,1,g))
       end do
