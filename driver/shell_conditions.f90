@@ -112,7 +112,9 @@ contains
       associate (request => draft%shell_conditions(i))
         if (request%keyword /= 'clam') cycle
         set = find_set_of_kind(model, request%set, set_surface)
-        if (set > 0) call add_clamp(model, request, set, relations, log)
+        if (set == 0) cycle
+        if (any(model%mesh%dp(model%sets(set)%items) /= 2)) cycle   ! refused by resolve_clamps
+        call add_clamp(model, request, set, relations, log)
       end associate
     end do
     do i = 1, size(draft%shell_conditions)
