@@ -2,33 +2,7 @@
 # Decks of quadrilateral meshes with extraordinary points against expected numbers, and again from the file of extraction
 # operators that they write.
 set -u
-failures=0
-
-solve() { # label deck [name=value ...]
-  local label=$1 deck=$2 status
-  shift 2
-  "$BEZEL" "$deck" "$@" --out "$label.out" >"$label.txt" 2>&1 </dev/null
-  status=$?
-  [ $status -eq 0 ] && return
-  echo "$label: exit status $status"
-  cat "$label.txt"
-  failures=$((failures + 1))
-}
-
-expect() { # label column expected tolerance: last row of the history
-  awk -F, -v name="$2" -v expected="$3" -v tolerance="$4" -v label="$1" '
-    NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i }
-    { found = $column }
-    END {
-      if (!column || NR < 2) { print label ": no column or row for " name; exit 1 }
-      error = found - expected
-      if (error < 0) error = -error
-      if (!(error <= tolerance)) {
-        print label ": " name " expected " expected " found " found " tolerance " tolerance
-        exit 1
-      }
-    }' "$1.out/history.csv" || failures=$((failures + 1))
-}
+. "$BEZEL_SOURCE/tests/history_checks.sh"
 
 verify=$BEZEL_SOURCE/inputs/verify
 

@@ -1,33 +1,7 @@
 #!/usr/bin/env bash
 # Decks of the solid elements against expected numbers: patch tests, thick cylinder, Cook's membrane, locking.
 set -u
-failures=0
-
-solve() { # label deck [name=value ...]
-  local label=$1 deck=$2 status
-  shift 2
-  "$BEZEL" "$BEZEL_SOURCE/inputs/$deck.inp" "$@" --out "$label.out" >"$label.txt" 2>&1 </dev/null
-  status=$?
-  [ $status -eq 0 ] && return
-  echo "$label: exit status $status"
-  cat "$label.txt"
-  failures=$((failures + 1))
-}
-
-expect() { # label column expected tolerance: last row of the history
-  awk -F, -v name="$2" -v expected="$3" -v tolerance="$4" -v label="$1" '
-    NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i }
-    { found = $column }
-    END {
-      if (!column || NR < 2) { print label ": no column or row for " name; exit 1 }
-      error = found - expected
-      if (error < 0) error = -error
-      if (!(error <= tolerance)) {
-        print label ": " name " expected " expected " found " found " tolerance " tolerance
-        exit 1
-      }
-    }' "$1.out/history.csv" || failures=$((failures + 1))
-}
+. "$BEZEL_SOURCE/tests/history_checks.sh"
 
 # Patch tests: rounding (values of 1e-2, reactions of 10) and what 12 Gauss points leave of rational gradients.
 solve explicit patch_explicit
