@@ -85,6 +85,13 @@ contains
       code = exit_deck
       return
     end if
+    if (any(program%commands%what == do_path .and. program%commands%count == by_dissipation) .and. &
+      .not. can_dissipate(run%eq)) then
+      call log%put('error: PATH DISSipation needs something that dissipates, but no interface of the deck is cohesive. Use '// &
+        'PATH ARClength, or PATH AUTO')
+      code = exit_deck
+      return
+    end if
     call start_control(run%control, model)
     if (restart) then
       call read_restart(results%folder%file('restart.h5'), results%identity, run%resumed_step, run%eq, run%control, &
@@ -115,6 +122,15 @@ contains
     end if
     call log_shares(run, log, clock)
   end subroutine run_analysis
+
+  pure function can_dissipate(eq) result(yes)
+    !! Whether an interface has a history: the dissipated energy that path following controls is that of interfaces.
+    type(equilibrium_type), intent(in) :: eq
+    logical :: yes
+    integer :: i
+
+    yes = any([(size(eq%interfaces(i)%hist) > 0, i=1, size(eq%interfaces))])
+  end function can_dissipate
 
   subroutine count_steps(program, steps)
     !! How often TIME comes up in all.
@@ -161,6 +177,8 @@ contains
           run%dt_count = 0
         case (do_path)
           call set_path(command, run, results)
+          if (path_is_done(run)) call log%put('PATH: the time '//number(run%eq%time_n)//' is not before UNTIl='// &
+            number(run%path%until)//': the TIMEs that follow do nothing')
         case (do_time)
           run%times = run%times + 1
           if (path_is_done(run)) then

@@ -111,7 +111,7 @@ contains
     allocate (eq%u(model%ndf, n), eq%un(model%ndf, n), eq%f(model%ndf, n), eq%f_moved(model%ndf, n), &
       eq%fext(model%ndf, n), eq%f_n(model%ndf, n), eq%fext_n(model%ndf, n), source=0.0_wp)
     allocate (eq%r(eq%system%map%neq), source=0.0_wp)
-    call eq%system%map%expand(model, 0.0_wp, eq%u)
+    call eq%system%map%follow(eq%u)   ! nothing is moved yet: what is prescribed at time 0 does work, too
     eq%un = eq%u
     call clock%stop(phase_prepare)
   end subroutine start_equilibrium

@@ -94,6 +94,7 @@ contains
     path%nothing_left = .false.
     if (.not. path%time_step > 0) path%time_step = path%most_time
     path%time_step = min(path%time_step, path%most_time)
+    if (path%mode /= by_time .and. starts_loaded(model, eq)) path%mode = by_time
     do
       call solve_by_mode(model, eq, settings, control, path, clock, report, status)
       report%iterations = report%iterations + report%last%iterations
@@ -117,6 +118,16 @@ contains
     end do
     call accept(model, eq, control, path, report)
   end subroutine advance_path
+
+  pure function starts_loaded(model, eq) result(yes)
+    !! Whether the run begins here with loads or prescribed values that are not zero: that state is found by time.
+    type(model_type), intent(in) :: model
+    type(equilibrium_type), intent(in) :: eq
+    logical :: yes
+    integer :: i
+
+    yes = .not. abs(eq%time_n) > 0 .and. any([(abs(model%props(i)%at(0.0_wp)) > 0, i=1, size(model%props))])
+  end function starts_loaded
 
   subroutine solve_by_mode(model, eq, settings, control, path, clock, report, status)
     type(model_type), intent(inout) :: model

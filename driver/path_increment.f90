@@ -62,7 +62,7 @@ contains
     reference = 0
     eq%u = eq%un
     eq%time = eq%time_n
-    call eq%system%map%follow(eq%u)
+    call eq%system%map%expand(model, eq%time, eq%u)   ! at the start, what is prescribed there already
     call note_active(eq, was_active)
     do k = 1, settings%most_iterations + 1
       call eq%system%map%rates(model, eq%time, rate)

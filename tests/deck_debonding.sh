@@ -32,6 +32,23 @@ rows bar/history.csv '
 [ $? -eq 1 ] || fail "without path following the bar must stop with status 1"
 rows jump/history.csv 'END { if (v("end_ux") < 0.1035 || v("end_ux") > 0.104001) print "stopped at u = " v("end_ux") }'
 
+# What is prescribed at time 0 already does work (bar of stiffness 1000), and path following finds that state by time.
+jump=$BEZEL_SOURCE/tests/decks/jump_at_start.inp
+for path in off auto arc; do
+  "$BEZEL" "$jump" path=$path --out "jump_$path" >"jump_$path.txt" 2>&1 || fail "jump, path=$path: exit status $?"
+  rows "jump_$path/history.csv" '
+    { u = v("end_ux"); rows++ }
+    far(v("work"), 500*u*u, 1e-9) || far(v("elastic"), 500*u*u, 1e-9) { print "work " v("work") " at u = " u }
+    END { if (rows != 4 || u < 0.09) print rows + 0 " rows, the last at u = " u }'
+done
+sed 's/PATH ARClength LENGth=0.01 UNTIl=1/PATH DISSipation/' "$jump" >no_bond.inp
+"$BEZEL" no_bond.inp path=arc --out no_bond >no_bond.txt 2>&1
+[ $? -eq 2 ] || fail 'PATH DISSipation without a cohesive interface must be refused with status 2'
+grep -q 'no interface of the deck is cohesive' no_bond.txt || fail 'PATH DISSipation without cohesion: no such message'
+sed 's/PATH AUTO UNTIl=1/PATH AUTO UNTIl=0/' "$jump" >past.inp
+"$BEZEL" past.inp path=auto --out past >past.txt 2>&1 || fail "UNTIl=0: exit status $?"
+grep -q 'is not before UNTIl' past.txt || fail 'UNTIl in the past: no message'
+
 # Moments before the crack grows within 1 %, afterwards M_c within what 1 mm elements oscillate by.
 "$BEZEL" "$inputs/dcb_ebm.inp" basis=N last=0.04 --out ebm >ebm.txt 2>&1 || fail "ebm: exit status $?"
 rows ebm/history.csv '
