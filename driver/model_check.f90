@@ -162,7 +162,7 @@ contains
 
   subroutine smallest_jacobian(model, e, detj, place, status)
     !! Of an element, at its Gauss points (degree + 1 in each direction) and its corners.
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in), target :: model
     integer, intent(in) :: e                     !! element
     real(wp), intent(out) :: detj                !! the first value that is wrong, or the smallest
     real(wp), intent(out) :: place(:)            !! where (ndm)
@@ -171,16 +171,14 @@ contains
       dshpx(:, :), xi(:, :), wt(:)
     integer, allocatable :: ix(:)
     real(wp) :: d, x(model%ndm), tau(model%ndm, model%ndm - 1), nrm(model%ndm), largest
-    integer :: dp, g, ng, nen, op
+    integer :: dp, g, ng, nen
     logical :: corner
     real(wp), parameter :: rounding = 1e-10_wp
 
     dp = model%mesh%dp(e)
     nen = model%mesh%nen(e)
     allocate (ix, source=model%mesh%nodes(model%mesh%node_ptr(e):model%mesh%node_ptr(e + 1) - 1))
-    op = model%mesh%operator_of(e)
-    ce = reshape(model%mesh%coef(model%mesh%op_ptr(op):model%mesh%op_ptr(op + 1) - 1), &
-      [nen, model%mesh%nb(e)])
+    allocate (ce, source=model%mesh%operator(e))
     xe = model%x(:, ix)
     we = model%w(ix)
     allocate (shp(nen), dshp(dp, nen), d2shp((dp*(dp + 1))/2, nen), dshpx(dp, nen))

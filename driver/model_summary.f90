@@ -104,21 +104,19 @@ contains
   function element_measure(model, e) result(total)
     !! Length, area or volume of an element in the reference configuration. The rule is exact for
     !! polynomial maps.
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in), target :: model
     integer, intent(in) :: e
     real(wp) :: total
     real(wp), allocatable :: xe(:, :), we(:), ce(:, :), shp(:), dshp(:, :), d2shp(:, :), &
       dshpx(:, :), xi(:, :), wt(:)
     integer, allocatable :: ix(:)
     real(wp) :: j, x(model%ndm), tau(model%ndm, model%ndm - 1), nrm(model%ndm)
-    integer :: dp, g, nen, ng, op, status
+    integer :: dp, g, nen, ng, status
 
     dp = model%mesh%dp(e)
     nen = model%mesh%nen(e)
     allocate (ix, source=model%mesh%nodes(model%mesh%node_ptr(e):model%mesh%node_ptr(e + 1) - 1))
-    op = model%mesh%operator_of(e)
-    ce = reshape(model%mesh%coef(model%mesh%op_ptr(op):model%mesh%op_ptr(op + 1) - 1), &
-      [nen, model%mesh%nb(e)])
+    allocate (ce, source=model%mesh%operator(e))
     xe = model%x(:, ix)
     we = model%w(ix)
     allocate (shp(nen), dshp(dp, nen), d2shp((dp*(dp + 1))/2, nen), dshpx(dp, nen))

@@ -13,12 +13,12 @@ solve() { # label deck [name=value ...]: a file, or a deck's name in inputs/ wit
   failures=$((failures + 1))
 }
 
-expect() { # label column expected tolerance: last row of the history
-  awk -F, -v name="$2" -v expected="$3" -v tolerance="$4" -v label="$1" '
+expect() { # label column expected tolerance [step]: in the last row of the history, or in that of a step
+  awk -F, -v name="$2" -v expected="$3" -v tolerance="$4" -v label="$1" -v step="${5-}" '
     NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i }
-    { found = $column }
+    NR > 1 && (step == "" || $1 == step) { found = $column; rows++ }
     END {
-      if (!column || NR < 2) { print label ": no column or row for " name; exit 1 }
+      if (!column || !rows) { print label ": no column or row for " name; exit 1 }
       error = found - expected
       if (error < 0) error = -error
       if (!(error <= tolerance)) {
