@@ -425,6 +425,8 @@ contains
     write (line, '(a,f10.3,a,i0,a,i0,a)') 'total', total, ' s, ', run%iterations, ' iterations, ', run%cutbacks, &
       ' cut-backs'
     call log%put(trim(line))
+    if (run%eq%leaps > 0) call log%put(text(run%eq%leaps)//' increments were cut back because slave points moved past the '// &
+      'search distance; a larger REACh avoids that')
     known = 0
     do i = 1, size(phase_names)
       if (clock%calls(i) == 0) cycle

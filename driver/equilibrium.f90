@@ -51,6 +51,7 @@ module equilibrium
     integer :: forced = 0                          !! interface points held on a kink for one evaluation: no solution
     integer :: point_count = 0                     !! of all interfaces
     integer :: patterns = 0                        !! how often the pattern was built
+    integer :: leaps = 0                           !! increments refused as a slave point may have passed the master
     logical :: pattern_stands = .false.
     character(:), allocatable :: fault             !! what stopped the last evaluation, with its place
   end type equilibrium_type

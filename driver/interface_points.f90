@@ -27,7 +27,8 @@ module interface_points
   implicit none (type, external)
   private
   public :: interface_points_type, prepare_interface, pair_interface, assemble_interface, commit_interface, &
-    add_dissipation_gradient, roll_back_interface, place_of_slave, forget_search
+    add_dissipation_gradient, roll_back_interface, place_of_slave, &
+    height_above_master, forget_search
 
   type :: interface_points_type
     type(facet_surface) :: slave, master
@@ -171,7 +172,7 @@ contains
     most = 0
     do i = 1, points%np
       if (points%facet(i) == 0) cycle
-      call height_above_master(model, points, i, height, status)
+      call height_above_master(model, points, model%x, i, points%facet(i), points%xi(:, i), height, status)
       if (status /= ok) return
       least = min(least, height)
       most = max(most, height)
@@ -186,27 +187,29 @@ contains
     call forget_search(points)
   end subroutine find_side
 
-  subroutine height_above_master(model, points, i, height, status)
-    !! (x_s - x_m) . n of a paired point in the reference position, with the normal t_1 x t_2.
+  subroutine height_above_master(model, points, x, i, m, xi, height, status)
+    !! (x_s - x_m) . n of a slave point over a place of the master, with the normal t_1 x t_2.
     type(model_type), intent(in) :: model
     type(interface_points_type), intent(in), target :: points
-    integer, intent(in) :: i
-    real(wp), intent(out) :: height
+    real(wp), intent(in) :: x(:, :)    !! positions of the nodes (ndm,nn) [length]
+    integer, intent(in) :: i           !! point
+    integer, intent(in) :: m           !! master facet
+    real(wp), intent(in) :: xi(:)      !! place on it (dp)
+    real(wp), intent(out) :: height    !! [length]
     integer, intent(out) :: status
     real(wp), dimension(model%ndm) :: xs, xm, nrm
     real(wp) :: shp(points%nen_max), dshp(model%ndm - 1, points%nen_max), d2shp(0, 0), tau(model%ndm, model%ndm - 1), area
     integer, pointer, contiguous :: nodes(:)
-    integer :: m, n
+    integer :: n
 
-    m = points%facet(i)
     nodes => points%master%set%connectivity(m)
     n = size(nodes)
     height = 0
-    call place_of_slave(model%x, points, i, xs)
-    call shape_functions(points%master%set%degree(1:model%ndm - 1, m), model%w(nodes), points%master%set%operator(m), &
-                         points%xi(:, i), 1, shp(1:n), dshp(:, 1:n), d2shp, status)
+    call place_of_slave(x, points, i, xs)
+    call shape_functions(points%master%set%degree(1:model%ndm - 1, m), model%w(nodes), points%master%set%operator(m), xi, 1, &
+                         shp(1:n), dshp(:, 1:n), d2shp, status)
     if (status /= ok) return
-    call tangent_frame_at(model%x(:, nodes), shp(1:n), dshp(:, 1:n), xm, tau, nrm, area, status)
+    call tangent_frame_at(x(:, nodes), shp(1:n), dshp(:, 1:n), xm, tau, nrm, area, status)
     if (status == ok) height = dot_product(xs - xm, nrm)
   end subroutine height_above_master
 

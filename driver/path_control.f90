@@ -17,6 +17,7 @@ module path_control
   use newton, only: newton_settings, solve_increment
   use path_increment, only: path_constraint, solve_path_increment, path_arc, path_dissipation, &
     nothing_left
+  use interface_leaps, only: refuse_leaps
   use linear_solver, only: inertia_unknown
   use step_control, only: step_control_type, step_report, note_rate
   use timers, only: timer_set
@@ -104,6 +105,7 @@ contains
         status = no_convergence
         report%last%fault = 'the increment jumped over a limit point'
       end if
+      call refuse_leaps(model, eq, report%last, status)
       if (status == ok) exit
       call roll_back(eq)
       call eq%system%map%follow(eq%u)

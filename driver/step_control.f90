@@ -6,6 +6,7 @@ module step_control
   use model_data, only: model_type
   use equilibrium, only: equilibrium_type, commit, roll_back
   use newton, only: newton_settings, newton_report, solve_increment
+  use interface_leaps, only: refuse_leaps
   use timers, only: timer_set
   implicit none (type, external)
   private
@@ -65,6 +66,7 @@ contains
         call solve_increment(model, eq, settings, t_new, control%rate, .false., clock, report%last, status)
         report%iterations = report%iterations + report%last%iterations
       end if
+      call refuse_leaps(model, eq, report%last, status)
       if (status == ok) then
         call note_rate(control, eq)
         call commit(eq)
