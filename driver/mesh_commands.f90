@@ -103,7 +103,7 @@ contains
     case ('clam', 'symm'); call read_shell_condition(rec, draft, log)
     case ('cont'); call read_contact(deck, rec, model, draft, log)
     case ('endf'); call read_end_face(rec, model%ndm, draft, log)
-    case ('hist'); call read_history(rec, draft, log)
+    case ('hist'); call read_history(rec, model%ndm, draft, log)
     case ('outp'); call read_output(rec, model, log)
     case ('rest'); call read_restart(rec, model, log)
     case ('expo'); call read_export(rec, model, log)

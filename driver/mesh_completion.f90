@@ -13,6 +13,7 @@ module mesh_completion
   use shell_conditions, only: resolve_clamps, resolve_slopes
   use end_face_commands, only: resolve_end_faces, resolve_face_histories
   use interface_commands, only: resolve_interfaces, resolve_loads, resolve_histories
+  use point_histories, only: resolve_point_histories
   use model_check, only: check_dimensions, check_mesh, check_nodes, check_geometry, switch_off_unused
   implicit none (type, external)
   private
@@ -62,6 +63,9 @@ contains
     call resolve_interfaces(model, draft, log)
     call resolve_histories(model, draft, log)
     call resolve_face_histories(model, draft, log)
+    mesh_errors = log%error_count()
+    if (all_materials .and. .not. draft%has_lost_sets .and. mesh_errors == error_count) &
+      call resolve_point_histories(model, draft, log)
     if (all_materials .and. log%error_count() == 0) call switch_off_unused(model, draft, log)
     if (log%error_count() == error_count) call check_exports(model, log)
     call model%mesh%finish()

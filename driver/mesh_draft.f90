@@ -74,6 +74,8 @@ module mesh_draft
     type(deck_place) :: at
     character(:), allocatable :: set          !! '' : the whole model, or an end face
     character(:), allocatable :: end_face     !! unallocated: none
+    character(:), allocatable :: surface      !! of a material point; unallocated: none
+    real(wp) :: point(3) = 0                  !! the point
     type(history_request) :: request
   end type history_draft
 

@@ -86,6 +86,8 @@ module model_data
     integer :: set = 0                   !! node set or surface (index into sets), 0: the whole model
     logical :: reaction = .false.        !! <label>_rx,<label>_ry,<label>_rz: sums over the set
     logical :: displacement = .false.    !! <label>_ux,...: of the one node, or the mean over the set
+    integer, allocatable :: nodes(:)     !! of the facet on which a material point lies; unallocated: none is asked for
+    real(wp), allocatable :: shares(:)   !! the facet's functions there
     integer :: end_face = 0              !! index into end_faces
     logical :: moment = .false.          !! <label>_m: that the support (or the load) applies to the face
     logical :: rotation = .false.        !! <label>_rot: angle [rad]

@@ -9,27 +9,31 @@ module output_commands
   private
   public :: read_history, read_output, read_restart
 
-  character(12), parameter :: history_words(12) = [character(12) :: 'REACtion', 'DISPlacement', &
+  character(12), parameter :: history_words(14) = [character(12) :: 'REACtion', 'DISPlacement', &
     'WORK', 'ELAStic', 'PENAlty', 'DISSipated', 'PENEtration', 'BALAnce', 'SET', 'ENDFace', &
-    'MOMEnt', 'ROTAtion']
+    'MOMEnt', 'ROTAtion', 'SURFace', 'POINt']
 
 contains
 
-  subroutine read_history(command, draft, log)
+  subroutine read_history(command, ndm, draft, log)
     !! HISTory label SET=name [REACtion] [DISPlacement], or
+    !! HISTory label SURFace=name POINt=x y [z] DISPlacement of a material point, or
     !! HISTory label ENDFace=name [MOMEnt] [ROTAtion] (both if neither is named), or
     !! HISTory [WORK] [ELAStic] [PENAlty] [DISSipated] [PENEtration] [BALAnce] of the whole model.
     type(record), intent(in) :: command
+    integer, intent(in) :: ndm                      !! space dimension
     type(draft_type), intent(inout) :: draft
     type(message_log), intent(inout) :: log
     type(history_draft) :: new
-    integer :: first, i, set_item, face_item
+    integer :: first, i, set_item, face_item, surface_item, point_item
 
     new%at = command%at
     new%set = ''
     new%request%label = ''
     set_item = 0
     face_item = 0
+    surface_item = 0
+    point_item = 0
     first = 2
     if (command%has('set')) then
       call command%text(2, new%request%label, log, 'label')
@@ -44,10 +48,27 @@ contains
       call command%check_options(['endface'], log)
       face_item = command%find('endface')
       first = 3
+    else if (command%has('surface') .or. command%has('point')) then
+      call command%text(2, new%request%label, log, 'label')
+      new%surface = ''
+      call command%text_option('surface', new%surface, log)
+      call command%check_options(['surface', 'point  '], log)
+      if (len(new%surface) == 0) call command%add_error(log, 'the surface of the point is missing', &
+        'Write HISTory label SURFace=name POINt=x y z DISPlacement')
+      surface_item = command%find('surface')
+      point_item = command%find('point')
+      if (point_item > 0) then
+        call command%numbers(point_item, new%point(1:ndm), log, 'coordinates of the point')
+      else
+        call command%add_error(log, 'the point is missing', 'Write HISTory label SURFace=name POINt=x y z DISPlacement')
+      end if
+      first = 3
     end if
     associate (r => new%request)
       do i = first, command%count
         if (i == set_item .or. i + 1 == set_item .or. i == face_item .or. i + 1 == face_item) cycle
+        if (i == surface_item .or. i + 1 == surface_item) cycle
+        if (point_item > 0 .and. i + 1 >= point_item .and. i < point_item + ndm) cycle
         select case (command%key(i))
         case ('reac'); r%reaction = .true.
         case ('disp'); r%displacement = .true.
@@ -65,9 +86,13 @@ contains
           return
         end select
       end do
-      if ((r%reaction .or. r%displacement) .and. set_item == 0) call command%add_error(log, &
-        'reactions and displacements are those of a set', &
-        'Write HISTory label SET=name REACtion DISPlacement')
+      if (allocated(new%surface)) then
+        if (r%reaction) call command%add_error(log, 'a point has no reaction', 'Reactions are those of a SET')
+        r%displacement = .true.
+      else if ((r%reaction .or. r%displacement) .and. set_item == 0) then
+        call command%add_error(log, 'reactions and displacements are those of a set', &
+          'Write HISTory label SET=name REACtion DISPlacement')
+      end if
       if (set_item > 0 .and. .not. (r%reaction .or. r%displacement)) call command%add_error(log, &
         'nothing is asked of the set', 'Add REACtion or DISPlacement')
       if ((r%moment .or. r%rotation) .and. face_item == 0) call command%add_error(log, &

@@ -13,6 +13,7 @@ module run_results
   use result_frame, only: result_field_type, named_text_type
   use result_folder, only: result_folder_type
   use restart_state, only: write_restart
+  use point_histories, only: point_displacement
   implicit none (type, external)
   private
   public :: run_results_type, column_label
@@ -133,9 +134,13 @@ contains
       call eq%system%map%support_forces(eq%f_n, supports)
       do h = 1, size(model%histories)
         associate (request => model%histories(h))
-          if (request%reaction .or. request%displacement) nodes = nodes_of_set(model, request%set)
-          if (request%reaction) values = [values, (sum(supports(i, nodes)), i=1, model%ndm)]
-          if (request%displacement) values = [values, (sum(eq%un(i, nodes))/max(size(nodes), 1), i=1, model%ndm)]
+          if (allocated(request%nodes)) then
+            values = [values, point_displacement(request, eq%un, model%ndm)]
+          else if (request%reaction .or. request%displacement) then
+            nodes = nodes_of_set(model, request%set)
+            if (request%reaction) values = [values, (sum(supports(i, nodes)), i=1, model%ndm)]
+            if (request%displacement) values = [values, (sum(eq%un(i, nodes))/max(size(nodes), 1), i=1, model%ndm)]
+          end if
           if (request%moment) values = [values, end_moment(model, eq, request%end_face)]
           if (request%rotation) values = [values, eq%un(1, model%end_faces(request%end_face)%rotation)]
           if (request%work) values = [values, eq%energies_n%work]

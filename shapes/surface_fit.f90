@@ -1,7 +1,7 @@
 module surface_fit
   !! Moves the control points of a surface so that it follows another one, known by its
   !! closest points: least squares of the distances to the closest points at Gauss points, which
-  !! are then found again. Normal equations by conjugate gradients, element by element.
+  !! are then found again. Normal equations by conjugate gradients.
   use kinds, only: wp
   use status_codes, only: ok
   use extraction_mesh, only: extraction_mesh_type
@@ -31,6 +31,13 @@ module surface_fit
     real(wp), allocatable :: wt(:)                 !! (ng)
   end type samples_type
 
+  !> the matrix of the normal equations, row by row
+  type :: normal_matrix
+    integer, allocatable :: ptr(:)                 !! where a row begins (nn+1)
+    integer, allocatable :: column(:)
+    real(wp), allocatable :: value(:), diagonal(:)
+  end type normal_matrix
+
 contains
 
   subroutine fit_surface(mesh, surface, held, rounds)
@@ -40,20 +47,16 @@ contains
     integer, intent(in) :: rounds                  !! times that closest points are looked for
 
     type(samples_type), allocatable :: samples(:)
-    real(wp), allocatable :: diagonal(:), rhs(:,:), step(:,:)
+    type(normal_matrix) :: matrix
+    real(wp), allocatable :: rhs(:,:), step(:,:)
+    real(wp) :: first
     integer, pointer, contiguous :: ix(:)
-    integer :: e, g, k
+    integer :: e, k
 
     call take_samples(mesh, 1, samples)
-    allocate (diagonal(mesh%nn), source=0.0_wp)
-    do e = 1, mesh%elements%ne
-      ix => mesh%elements%connectivity(e)
-      do g = 1, size(samples(e)%wt)
-        diagonal(ix) = diagonal(ix) + samples(e)%wt(g)*samples(e)%shp(:,g)**2
-      end do
-    end do
-    where (.not. diagonal > 0) diagonal = 1
+    call form_matrix(mesh, samples, matrix)
     allocate (rhs(3,mesh%nn), step(3,mesh%nn))
+    first = 0
     do k = 1, rounds
       rhs = 0
       do e = 1, mesh%elements%ne
@@ -61,7 +64,7 @@ contains
         call add_differences(samples(e), mesh%x(:,ix), ix)
       end do
       where (held) rhs = 0
-      call solve(mesh, samples, diagonal, held, rhs, step)
+      call solve(matrix, held, rhs, first, step)
       mesh%x = mesh%x + step
     end do
 
@@ -85,76 +88,143 @@ contains
     end subroutine add_differences
   end subroutine fit_surface
 
-  subroutine solve(mesh, samples, diagonal, held, rhs, x)
-    !! Conjugate gradients with the diagonal for the three coordinates at once.
+  subroutine form_matrix(mesh, samples, matrix)
+    !! sum_g w_g R_a R_b, row by row from the elements of each node.
     type(extraction_mesh_type), intent(in), target :: mesh
     type(samples_type), intent(in) :: samples(:)
-    real(wp), intent(in) :: diagonal(:)
+    type(normal_matrix), intent(out) :: matrix
+
+    integer, pointer, contiguous :: ix(:)
+    integer, allocatable :: elements_of(:), ptr(:), next(:), place(:)
+    real(wp), allocatable :: row(:)
+    integer :: a, b, e, i, own, length
+
+    allocate (elements_of(mesh%elements%node_ptr(mesh%elements%ne+1)-1), next(mesh%nn), row(mesh%nn))
+    allocate (ptr(mesh%nn+1), place(mesh%nn), source=0)
+    do e = 1, mesh%elements%ne
+      ix => mesh%elements%connectivity(e)
+      ptr(ix+1) = ptr(ix+1) + 1
+    end do
+    ptr(1) = 1
+    do a = 1, mesh%nn
+      ptr(a+1) = ptr(a) + ptr(a+1)
+    end do
+    next = ptr(1:mesh%nn)
+    do e = 1, mesh%elements%ne
+      ix => mesh%elements%connectivity(e)
+      elements_of(next(ix)) = e
+      next(ix) = next(ix) + 1
+    end do
+
+    allocate (matrix%ptr(mesh%nn+1), matrix%column(0), matrix%value(0), matrix%diagonal(mesh%nn))
+    matrix%ptr(1) = 1
+    do a = 1, mesh%nn
+      length = 0
+      do i = ptr(a), ptr(a+1) - 1
+        e = elements_of(i)
+        ix => mesh%elements%connectivity(e)
+        own = findloc(ix, a, dim=1)
+        do b = 1, size(ix)
+          if (place(ix(b)) == 0) then
+            length = length + 1
+            next(length) = ix(b)
+            place(ix(b)) = length
+            row(length) = 0
+          end if
+          row(place(ix(b))) = row(place(ix(b))) + sum(samples(e)%wt*samples(e)%shp(own,:)*samples(e)%shp(b,:))
+        end do
+      end do
+      matrix%ptr(a+1) = matrix%ptr(a) + length
+      call make_room(matrix, matrix%ptr(a+1) - 1)
+      matrix%column(matrix%ptr(a):matrix%ptr(a+1)-1) = next(1:length)
+      matrix%value(matrix%ptr(a):matrix%ptr(a+1)-1) = row(1:length)
+      matrix%diagonal(a) = 0
+      if (length > 0) matrix%diagonal(a) = row(place(a))
+      place(next(1:length)) = 0
+    end do
+    where (.not. matrix%diagonal > 0) matrix%diagonal = 1
+  end subroutine form_matrix
+
+  pure subroutine make_room(matrix, n)
+    type(normal_matrix), intent(inout) :: matrix
+    integer, intent(in) :: n                       !! entries that must fit
+
+    integer, allocatable :: column(:)
+    real(wp), allocatable :: value(:)
+    integer :: old
+
+    old = size(matrix%column)
+    if (n <= old) return
+    allocate (column(2*n), value(2*n))
+    column(1:old) = matrix%column
+    value(1:old) = matrix%value
+    call move_alloc(column, matrix%column)
+    call move_alloc(value, matrix%value)
+  end subroutine make_room
+
+  pure subroutine solve(matrix, held, rhs, first, x)
+    !! Conjugate gradients with the diagonal for the three coordinates at once.
+    type(normal_matrix), intent(in) :: matrix
     logical, intent(in) :: held(:,:)
     real(wp), intent(in) :: rhs(:,:)
+    real(wp), intent(inout) :: first               !! size of the first round's right-hand side, 0 before: it sets the
+                                                   !! accuracy of all rounds
     real(wp), intent(out) :: x(:,:)
 
     integer, parameter :: most_steps = 1000
     real(wp), parameter :: small = 1e-14_wp
     real(wp), allocatable :: p(:,:), q(:,:), r(:,:), z(:,:)
-    real(wp) :: alpha, first, rz, rz_old
+    real(wp) :: alpha, rz, rz_old
     integer :: k
 
     x = 0
     allocate (r, source=rhs)
     allocate (z, mold=r)
     allocate (q, mold=r)
-    call precondition()
+    call precondition(matrix, r, z)
     allocate (p, source=z)
     rz = sum(r*z)
-    first = rz
+    first = max(first, rz)
     do k = 1, most_steps
       if (.not. rz > small**2*first) exit
-      call multiply(mesh, samples, p, q)
+      call multiply(matrix, p, q)
       where (held) q = 0
       alpha = rz/sum(p*q)
       x = x + alpha*p
       r = r - alpha*q
-      call precondition()
+      call precondition(matrix, r, z)
       rz_old = rz
       rz = sum(r*z)
       p = z + rz/rz_old*p
     end do
-
-  contains
-
-    subroutine precondition()
-      integer :: a
-
-      do a = 1, size(diagonal)
-        z(:,a) = r(:,a)/diagonal(a)
-      end do
-    end subroutine precondition
   end subroutine solve
 
-  subroutine multiply(mesh, samples, p, q)
-    type(extraction_mesh_type), intent(in), target :: mesh
-    type(samples_type), intent(in) :: samples(:)
+  pure subroutine precondition(matrix, r, z)
+    type(normal_matrix), intent(in) :: matrix
+    real(wp), intent(in) :: r(:,:)
+    real(wp), intent(out) :: z(:,:)
+
+    integer :: a
+
+    do a = 1, size(matrix%diagonal)
+      z(:,a) = r(:,a)/matrix%diagonal(a)
+    end do
+  end subroutine precondition
+
+  pure subroutine multiply(matrix, p, q)
+    type(normal_matrix), intent(in) :: matrix
     real(wp), intent(in) :: p(:,:)
     real(wp), intent(out) :: q(:,:)
 
-    integer, pointer, contiguous :: ix(:)
-    real(wp) :: value_at(3)
-    integer :: a, e, g
+    real(wp) :: s(3)
+    integer :: a, k
 
-    q = 0
-    do e = 1, mesh%elements%ne
-      ix => mesh%elements%connectivity(e)
-      do g = 1, size(samples(e)%wt)
-        value_at = 0
-        do a = 1, size(ix)
-          value_at = value_at + samples(e)%shp(a,g)*p(:,ix(a))
-        end do
-        value_at = samples(e)%wt(g)*value_at
-        do a = 1, size(ix)
-          q(:,ix(a)) = q(:,ix(a)) + samples(e)%shp(a,g)*value_at
-        end do
+    do a = 1, size(q, 2)
+      s = 0
+      do k = matrix%ptr(a), matrix%ptr(a+1) - 1
+        s = s + matrix%value(k)*p(:,matrix%column(k))
       end do
+      q(:,a) = s
     end do
   end subroutine multiply
 

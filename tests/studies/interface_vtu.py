@@ -4,9 +4,9 @@ import re
 import numpy
 
 
-def read(folder):
-    """Arrays of the last output in a result folder: Points (n,3), gap, traction, active, paired (n)."""
-    raw = sorted(folder.glob("interface_*.vtu"))[-1].read_bytes()
+def read(folder, step=None):
+    """Arrays of the last output in a result folder, or of that of a step: Points (n,3), gap, traction, active, paired (n)."""
+    raw = sorted(folder.glob("interface_*.vtu" if step is None else f"interface_{step:06d}.vtu"))[-1].read_bytes()
     mark = b'<AppendedData encoding="raw">\n_'
     start = raw.index(mark) + len(mark)
     kinds = {b"Float64": "<f8", b"Int64": "<i8", b"UInt8": "u1"}
