@@ -13,7 +13,8 @@ module quad_mesh_commands
   !!       REFIne n                     every face becomes four, n times
   !!       REFIne BOX x1 x2 y1 y2 [z1 z2] LEVEls=n      elements that reach into a box in space, n times more
   !!       REFIne VERTex v DISTance=d LEVEls=n          elements nearer than d to a vertex
-  !!       SPHEre x y z r               control points move so that the surface follows this sphere
+  !!       SPHEre x y z r [SYMMetric]   control points move so that the surface follows this sphere
+  !!       SWEEp vx vy vz DEGRee=r ELEMents=n [RATIo=q]   the surface becomes a solid along a vector
   !!
   !! The mesh is in the file or in VERTices and FACEs, which come first; a blank line ends the data set. Vertices are the
   !! control points where the mesh is regular; on the boundary and on creases the surface's curves have the vertices as
@@ -24,8 +25,10 @@ module quad_mesh_commands
   !!
   !! One element a face, or a part of it. Sets made: elements NAME, surfaces NAME.boundary (all open edges) and NAME.edge1,
   !! NAME.edge2, ...: pieces of the boundary between its corners, in the direction that has the surface on its left; the
-  !! first begins at the corner of the lowest number (without corners: at the lowest vertex).
+  !! first begins at the corner of the lowest number (without corners: at the lowest vertex). A solid has these sides, NAME.back
+  !! (the surface) and NAME.front (where it ends).
   use kinds, only: wp
+  use status_codes, only: ok, status_text
   use messages, only: message_log, quoted, in_place, whole_text
   use deck_record, only: record
   use deck_reader, only: deck_type => deck
@@ -34,6 +37,7 @@ module quad_mesh_commands
   use mesh_draft, only: draft_type
   use data_lines, only: next_line
   use element_commands, only: begin_origin
+  use quad_bodies, only: quad_body, add_quad_body
   use quad_mesh_lines, only: quad_draft, read_quad_file, carry_out_quad_line
   use extraction_mesh, only: extraction_mesh_type
   use quad_mesh, only: quad_mesh_type, next_corner
@@ -44,7 +48,10 @@ module quad_mesh_commands
   use refinement_zones, only: zones_type
   use side_extraction, only: side_operator, side_functions
   use surface_fit, only: fit_surface
+  use linear_rows, only: linear_rows_type
+  use right_angles, only: add_right_angle
   use sphere_target, only: sphere_type
+  use t_sweep, only: sweep_type
   implicit none (type, external)
   private
   public :: read_quad_mesh
@@ -104,9 +111,9 @@ contains
       return
     end if
     call local_mesh(local, mesh)
-    if (new%on_sphere) call fit(new%sphere, local, mesh)
+    if (new%on_sphere) call fit(new%sphere, new%is_symmetric, local, mesh)
     call begin_origin(draft, command, 'QUADmesh', name)
-    call add_to_mesh(local, mesh, name, material, body, command, model, draft)
+    call add_to_mesh(local, mesh, new%sweep, name, material, body, command, model, draft, log)
   end subroutine read_quad_mesh
 
   subroutine build(new, spline, message)
@@ -128,7 +135,7 @@ contains
     if (len(message) > 0) return
     call controls_from_vertices(spline)
     do
-      if (new%on_sphere) call fit_spline(new%sphere, spline, message)
+      if (new%on_sphere) call fit_spline(new%sphere, new%is_symmetric, spline, message)
       if (left == 0 .or. len(message) > 0) exit
       call refine_spline(spline, finer, message)
       if (len(message) > 0) return
@@ -137,8 +144,9 @@ contains
     end do
   end subroutine build
 
-  subroutine fit_spline(sphere, spline, message)
+  subroutine fit_spline(sphere, is_symmetric, spline, message)
     type(sphere_type), intent(in) :: sphere
+    logical, intent(in) :: is_symmetric
     type(unstructured_spline_type), intent(inout) :: spline
     character(:), allocatable, intent(inout) :: message
     type(local_spline_type) :: local
@@ -148,17 +156,19 @@ contains
     call refine_locally(spline, nowhere, 0, local, message)
     if (len(message) > 0) return
     call local_mesh(local, mesh)
-    call fit(sphere, local, mesh)
+    call fit(sphere, is_symmetric, local, mesh)
     spline%cp = mesh%x
   end subroutine fit_spline
 
-  subroutine fit(sphere, local, mesh)
+  subroutine fit(sphere, is_symmetric, local, mesh)
     type(sphere_type), intent(in) :: sphere
+    logical, intent(in) :: is_symmetric               !! pieces in planes through the centre meet these at right angles
     type(local_spline_type), intent(in) :: local
     type(extraction_mesh_type), intent(inout), target :: mesh
     logical, allocatable :: held(:, :), on_piece(:)
     integer, allocatable :: edges(:), elements(:), first(:), sides(:)
-    real(wp) :: size_of
+    type(linear_rows_type) :: rows(3)
+    real(wp) :: size_of, x(mesh%nn)
     integer :: i, k, m, n
 
     allocate (held(3, mesh%nn), source=.false.)
@@ -178,7 +188,29 @@ contains
           held(i, :) = held(i, :) .or. on_piece
       end do
     end do
-    call fit_surface(mesh, sphere, held, fit_rounds)
+    do i = 1, 3
+      call rows(i)%start(.not. held(i, :))
+    end do
+    if (is_symmetric) then
+      do m = 1, size(edges)
+        call local_sides(local, edges(m), elements, sides)
+        do n = 1, size(elements)
+          on_piece = .false.
+          call mark_side(mesh, elements(n), sides(n), on_piece)
+          do i = 1, 3
+            if (maxval(abs(mesh%x(i, :) - sphere%centre(i)), mask=on_piece) < 1e-9_wp*size_of) &
+              call add_right_angle(mesh, elements(n), sides(n), i, rows)
+          end do
+        end do
+      end do
+      do i = 1, 3
+        x = mesh%x(i, :) - sphere%centre(i)
+        call rows(i)%finish()
+        call rows(i)%project(x)
+        mesh%x(i, :) = x + sphere%centre(i)
+      end do
+    end if
+    call fit_surface(mesh, sphere, held, rows, fit_rounds)
   end subroutine fit
 
   subroutine mark_side(mesh, e, side, marked)
@@ -240,33 +272,33 @@ contains
     end function is_corner
   end subroutine boundary_pieces
 
-  subroutine add_to_mesh(local, mesh, name, material, body, command, model, draft)
+  subroutine add_to_mesh(local, mesh, sweep, name, material, body, command, model, draft, log)
     type(local_spline_type), intent(in) :: local
     type(extraction_mesh_type), intent(in), target :: mesh
+    type(sweep_type), allocatable, intent(in) :: sweep
     character(*), intent(in) :: name
     integer, intent(in) :: material, body
     type(record), intent(in) :: command
     type(model_type), intent(inout) :: model
     type(draft_type), intent(inout) :: draft
+    type(message_log), intent(inout) :: log
+    type(quad_body) :: added
     integer, allocatable :: edges(:), first(:)
-    integer :: a, e, first_element, id, k, old_nn
+    integer :: e, k, status
 
-    old_nn = draft%nn
-    first_element = model%mesh%ne + 1
-    do a = 1, mesh%nn
-      call draft%set_node(old_nn + a, mesh%x(1:model%ndm, a), mesh%w(a))
-    end do
-    do e = 1, mesh%elements%ne
-      call model%mesh%add_element(2, mesh%elements%degree(1:2, e), mesh%elements%connectivity(e) + old_nn, &
-        mesh%elements%operator(e), id)
-    end do
-    call draft%note_elements(first_element, model%mesh%ne, material, body, command%at)
-    call add_set(model, name, in_place(command%at), set_elements, [(e, e = first_element, model%mesh%ne)], [integer ::])
+    call add_quad_body(mesh, sweep, model, draft, added, status)
+    if (status /= ok) call command%add_error(log, status_text(status), 'Sweep fewer elements')
+    call draft%note_elements(added%first, added%last, material, body, command%at)
+    call add_set(model, name, in_place(command%at), set_elements, [(e, e = added%first, added%last)], [integer ::])
     call boundary_pieces(local%levels(1)%spline, edges, first)
     call add_edges('.boundary', edges)
     do k = 1, size(first) - 1
       call add_edges('.edge' // whole_text(k), edges(first(k):first(k+1)-1))
     end do
+    if (.not. allocated(sweep)) return
+    call add_set(model, name // '.back', in_place(command%at), set_surface, added%layer(1), spread(5, 1, added%flat))
+    call add_set(model, name // '.front', in_place(command%at), set_surface, added%layer(added%layers), &
+      spread(6, 1, added%flat))
 
   contains
 
@@ -279,10 +311,11 @@ contains
       allocate (all_elements(0), all_sides(0))
       do i = 1, size(corners)
         call local_sides(local, corners(i), elements, sides)
-        all_elements = [all_elements, elements + first_element - 1]
+        all_elements = [all_elements, elements]
         all_sides = [all_sides, sides]
       end do
-      call add_set(model, name // ending, in_place(command%at), set_surface, all_elements, all_sides)
+      call add_set(model, name // ending, in_place(command%at), set_surface, added%through_layers(all_elements), &
+        [(all_sides, i = 1, added%layers)])
     end subroutine add_edges
   end subroutine add_to_mesh
 end module quad_mesh_commands

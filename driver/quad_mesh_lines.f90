@@ -14,6 +14,8 @@ module quad_mesh_lines
   use quad_mesh, only: quad_mesh_type, create_quad_mesh, set_crease, set_interval
   use refinement_zones, only: zones_type, zone_type
   use sphere_target, only: sphere_type
+  use t_sweep, only: sweep_type
+  use t_patch_lines, only: read_sweep
   implicit none (type, external)
   private
   public :: quad_draft, read_quad_file, carry_out_quad_line
@@ -28,8 +30,9 @@ module quad_mesh_lines
     logical, allocatable :: given(:)             !! edges with intervals
     integer :: refinements = 0
     type(zones_type) :: zones                    !! of local refinement
-    logical :: on_sphere = .false.
+    logical :: on_sphere = .false., is_symmetric = .false.
     type(sphere_type) :: sphere
+    type(sweep_type), allocatable :: sweep       !! into a solid
   end type quad_draft
 
 contains
@@ -94,7 +97,7 @@ contains
         call read_faces(deck, rec, new, log)
       end if
       return
-    case ('crea', 'inte', 'refi', 'sphe', 'tran', 'rota', 'scal')
+    case ('crea', 'inte', 'refi', 'sphe', 'swee', 'tran', 'rota', 'scal')
       if (.not. new%is_built) then
         call rec%add_error(log, 'the mesh has no faces yet', 'Give FILE="name.obj", or VERTices and FACEs first')
         return
@@ -121,19 +124,26 @@ contains
     case ('refi')
       call read_refinement(rec, ndm, new, message, log)
     case ('sphe')
-      call rec%check_count(5, 5, log, 'SPHEre, its centre and its radius')
-      if (rec%count /= 5) return
+      call rec%check_count(5, 6, log, 'SPHEre, its centre and its radius [SYMMetric]')
+      if (rec%count < 5 .or. rec%count > 6) return
+      if (rec%count == 6) then
+        if (rec%key(6) /= 'symm') call rec%add_error(log, 'unknown word ' // quoted(rec%word(6)), &
+          'Behind the radius only SYMMetric may stand')
+        new%is_symmetric = .true.
+      end if
       call rec%numbers(2, values, log, 'centre and radius')
       new%sphere%centre = values(1:3)
       new%sphere%radius = values(4)
       new%on_sphere = .true.
       if (ndm < 3) message = 'a mesh in the plane follows no sphere'
       if (.not. values(4) > 0) message = 'the radius is not positive'
+    case ('swee')
+      call read_sweep(rec, ndm, new%sweep, log)
     case ('tran', 'rota', 'scal')
       call move_vertices(rec, ndm, new%mesh%x, log)
     case default
       call rec%add_error(log, 'unknown line ' // quoted(rec%word(1)), known_names([character(9) :: 'VERTices', 'FACEs', &
-        'CREAse', 'INTErval', 'TRANslate', 'ROTAte', 'SCALe', 'REFIne', 'SPHEre'], 'lines'))
+        'CREAse', 'INTErval', 'TRANslate', 'ROTAte', 'SCALe', 'REFIne', 'SPHEre', 'SWEEp'], 'lines'))
     end select
     if (len(message) > 0) call rec%add_error(log, message, '')
   end subroutine carry_out_quad_line

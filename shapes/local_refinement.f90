@@ -10,15 +10,15 @@ module local_refinement
   !! Giannelli, Juettler, Speleers (CAGD 29, 2012). T-junctions of elements come without condition.
   !!
   !! Elements are the largest faces of any level on which nothing changes further down. Beside seams
-  !! and in the faces of compact points the rule is not exact: elements there are those of the
-  !! finest level, with the functions of the coarse one where nothing is refined.
+  !! the rule is not exact: elements there are those of the finest level, with the functions of the
+  !! coarse one where nothing is refined.
   use kinds, only: wp
   use extraction_mesh, only: extraction_mesh_type
   use quad_mesh, only: face_of, next_corner
   use sparse_row, only: row_type, clear, add_term, add_row, add_scaled_term
   use bernstein, only: bernstein_basis
-  use unstructured_spline, only: unstructured_spline_type, coefficients_of, first_corner, &
-    side_of_edge
+  use unstructured_spline, only: unstructured_spline_type, coefficients_of, side_of_edge
+  use local_dependence, only: find_combination, merge_point
   use spline_refinement, only: refine_spline, follow_spline, quarter_place
   implicit none (type, external)
   private
@@ -147,7 +147,77 @@ contains
       end do
       call move_alloc(cp, local%cp)
     end associate
+    call remove_dependent(local, l, r, is_free)
   end subroutine join_level
+
+  subroutine remove_dependent(local, l, r, is_free)
+    !! Control points of levels 1 ... l that beside seams act on nothing in some combination since
+    !! those of level l+1 took over.
+    type(local_spline_type), intent(inout) :: local
+    integer, intent(in) :: l
+    type(row_type), intent(in) :: r(:)           !! rule
+    logical, intent(in) :: is_free(:)            !! control points of level l+1
+
+    type(row_type) :: combination
+    integer, allocatable :: candidates(:)
+    logical, allocatable :: acts_inside(:), at_seam(:)
+    integer :: a, f, gone, j, k, kept, m
+
+    allocate (acts_inside(local%n), at_seam(local%n), source=.false.)
+    associate (coarse => local%levels(l), fine => local%levels(l+1))
+      do a = 1, size(is_free)
+        if (.not. is_free(a)) cycle
+        do j = 1, r(a)%n
+          call mark(coarse%t(r(a)%id(j)), acts_inside)
+        end do
+      end do
+      do f = 1, coarse%spline%mesh%nf
+        if (.not. any(coarse%spline%mesh%seam(4*f-3:4*f))) cycle
+        do k = 1, (coarse%spline%degree(f)+1)**2
+          do j = 1, coarse%spline%b(k,f)%n
+            call mark(coarse%t(coarse%spline%b(k,f)%id(j)), at_seam)
+          end do
+        end do
+      end do
+      do
+        candidates = pack([(j, j = 1, size(at_seam))], acts_inside .and. at_seam)
+        call find_combination(fine%t, .not. is_free, candidates, combination)
+        if (combination%n < 2) exit
+        call merge_point(combination, candidates, local%cp, gone, kept)
+        acts_inside(gone) = .false.
+        do m = 1, l + 1
+          do a = 1, size(local%levels(m)%t)
+            call replace(local%levels(m)%t(a), gone, kept)
+          end do
+        end do
+      end do
+    end associate
+
+  contains
+
+    subroutine mark(row, marks)
+      type(row_type), intent(in) :: row
+      logical, intent(inout) :: marks(:)
+
+      marks(row%id(1:row%n)) = .true.
+    end subroutine mark
+
+    subroutine replace(row, gone, kept)
+      type(row_type), intent(inout) :: row
+      integer, intent(in) :: gone, kept          !! control points
+
+      real(wp) :: factor
+      integer :: place
+
+      place = findloc(row%id(1:row%n), gone, 1)
+      if (place == 0) return
+      factor = row%c(place)
+      row%id(place) = row%id(row%n)
+      row%c(place) = row%c(row%n)
+      row%n = row%n - 1
+      call add_scaled_term(row, factor, kept)
+    end subroutine replace
+  end subroutine remove_dependent
 
   subroutine refinement_rule(coarse, fine, rule)
     !! The control points of the refinement as combinations of those of the spline: probing of the
@@ -309,39 +379,23 @@ contains
     real(wp), parameter :: places(4) = [0.0_wp, 0.3_wp, 0.6_wp, 1.0_wp], rounding = 1e-11_wp
     real(wp), allocatable :: b(:,:), b_fine(:,:)
     real(wp) :: xi(2)
-    integer :: c, i, j, k
+    integer :: i, j, k
 
     same = .false.
     call coefficients_of(coarse, f, b)
-    c = first_corner(coarse, f)
     do k = 0, 3
-      ! the quarter at this corner, as its element sees it
-      call coefficients_of(fine, c, b_fine)
+      ! the quarter at this corner
+      call coefficients_of(fine, 4*f - 3 + k, b_fine)
       do j = 1, 4
         do i = 1, 4
           xi = [places(i), places(j)]
-          if (maxval(abs(place_of(b, quarter_place(k, xi)) - place_of(b_fine, turned(xi, &
-            first_corner(fine, c) - (4*c - 3))))) > rounding) return
+          if (maxval(abs(place_of(b, quarter_place(k, xi)) - place_of(b_fine, xi))) > rounding) &
+            return
         end do
       end do
-      c = next_corner(c)
     end do
     same = .true.
   end function shows_the_same
-
-  pure function turned(xi, corner) result(eta)
-    !! Parameters counted from another corner.
-    real(wp), intent(in) :: xi(2)
-    integer, intent(in) :: corner                !! 0 ... 3
-    real(wp) :: eta(2)
-
-    select case (corner)
-    case (0);     eta = xi
-    case (1);     eta = [xi(2), 1 - xi(1)]
-    case (2);     eta = 1 - xi
-    case default; eta = [1 - xi(2), xi(1)]
-    end select
-  end function turned
 
   pure function place_of(b, xi) result(x)
     real(wp), intent(in) :: b(:,:)               !! Bezier coefficients (3,(p+1)**2)
@@ -495,7 +549,7 @@ contains
           if (local%level_of(e) == l .and. local%face(e) == face_of(c)) exit
         end do
         elements = [elements, e]
-        sides = [sides, side_of_edge(local%levels(l)%spline, c)]
+        sides = [sides, side_of_edge(c)]
       else
         ! the quarter at the start begins with this edge, that at the end ends with it
         next = next_corner(c)

@@ -27,9 +27,12 @@ module quad_mesh
     integer, allocatable :: twin(:)          !! corner of the other face at the edge, 0: none
     real(wp), allocatable :: interval(:)     !! knot interval of the edge (4*nf)
     logical, allocatable :: crease(:)        !! edges not smooth, boundary edges among them (4*nf)
-    logical, allocatable :: seam(:)          !! edges on seams (see seam_lines) (4*nf)
+    logical :: has_seams = .false.           !! whether seams have been laid (see seam_lines)
+    logical, allocatable :: seam(:)          !! edges on seams (4*nf)
     real(wp), allocatable :: gluing(:,:)     !! A of the seam at both ends of the edge (2,4*nf)
-    logical, allocatable :: compact(:)       !! extraordinary points without seams (nv)
+    real(wp), allocatable :: bend(:)         !! factor of the edge's parameter squared in A (4*nf)
+    logical, allocatable :: fades(:,:)       !! whether a short seam ends at the start and the end
+                                             !! of the edge (2,4*nf)
     real(wp), allocatable :: angle(:)        !! between neighbouring edges of an extraordinary point
                                              !! in its tangent plane (nv) [rad]
     integer, allocatable :: corner(:)        !! a corner at each vertex: on the boundary the first
@@ -148,8 +151,8 @@ contains
     allocate (mesh%vertex(4*mesh%nf), source=reshape(faces, [4*mesh%nf]))
     allocate (mesh%twin(4*mesh%nf), source=0)
     allocate (mesh%interval(4*mesh%nf), source=1.0_wp)
-    allocate (mesh%crease(4*mesh%nf), mesh%seam(4*mesh%nf), mesh%compact(mesh%nv), source=.false.)
-    allocate (mesh%gluing(2,4*mesh%nf), source=0.0_wp)
+    allocate (mesh%crease(4*mesh%nf), mesh%seam(4*mesh%nf), mesh%fades(2,4*mesh%nf), source=.false.)
+    allocate (mesh%gluing(2,4*mesh%nf), mesh%bend(4*mesh%nf), source=0.0_wp)
     allocate (mesh%corner(mesh%nv), mesh%faces(mesh%nv), source=0)
     allocate (mesh%angle(mesh%nv), source=0.0_wp)
     if (mesh%nf == 0) message = 'the mesh has no faces'

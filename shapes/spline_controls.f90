@@ -2,9 +2,9 @@ module spline_controls
   !! Control points of an unstructured spline: from the vertices of its mesh, or so that it follows
   !! a given surface.
   use kinds, only: wp
-  use quad_mesh, only: quad_mesh_type, next_corner, previous_corner, face_of
-  use unstructured_spline, only: unstructured_spline_type
-  use joint_controls, only: set_rings, set_seams
+  use quad_mesh, only: quad_mesh_type, next_corner, previous_corner
+  use unstructured_spline, only: unstructured_spline_type, corner_point
+  use joint_controls, only: set_seams, mean_over
   implicit none (type, external)
   private
   public :: controls_from_vertices, controls_from_jets
@@ -12,64 +12,139 @@ module spline_controls
 contains
 
   subroutine controls_from_vertices(spline)
-    !! The vertices of the mesh are control points where it is regular. Points on creases are the
-    !! vertices on them (the crease runs through its corners), those inside beside them lie where
-    !! straight and even meshes stay so. Around extraordinary points the control points follow the
-    !! bicubic surface of the vertices.
+    !! The vertices of the mesh are control points where it is regular. Points on creases and long
+    !! seams are the vertices on them (the crease runs through its corners), those inside beside
+    !! them lie where straight and even meshes stay so. Extraordinary points with short seams and
+    !! their edges follow the bicubic surface of the vertices.
     type(unstructured_spline_type), intent(inout) :: spline
 
-    real(wp), allocatable :: arriving(:,:), inner(:,:), spoke(:,:), target_at(:,:,:,:)
-    real(wp) :: near(3,2)
-    integer :: c, k, v
+    real(wp), allocatable :: arriving(:,:), inner(:,:), point(:,:), spoke(:,:)
+    type(quad_mesh_type) :: smooth
+    integer :: c, v
 
     allocate (inner(3,4*spline%mesh%nf), spoke(3,4*spline%mesh%nf), source=0.0_wp)
     allocate (arriving, source=spoke)
+    smooth = without_short_seams(spline%mesh)
     associate (mesh => spline%mesh, slots => spline%slots, cp => spline%cp)
+      allocate (point, source=mesh%x)
       do v = 1, mesh%nv
         if (slots%vertex(v) > 0) cp(:,slots%vertex(v)) = mesh%x(:,v)
       end do
       do c = 1, 4*mesh%nf
-        if (mesh%is_open(c)) then
-          do k = 1, 2
-            near(:,k) = curve_point(mesh, slots%beyond(:,c), c, k)
-            if (slots%curve(k,c) > 0) cp(:,slots%curve(k,c)) = near(:,k)
-          end do
-          spoke(:,c) = near(:,1)
-          arriving(:,c) = near(:,2)
-        end if
-        inner(:,c) = inner_coefficient(mesh, c)
-        if (slots%inner(c) == 0) cycle
-        if (slots%irregular(face_of(c)) > 0 .or. mesh%seam(c) .or. &
-          mesh%seam(previous_corner(c))) then
-          cp(:,slots%inner(c)) = inner(:,c)
-        else
-          cp(:,slots%inner(c)) = inside(mesh, c)
-        end if
+        inner(:,c) = inner_coefficient(smooth, c)
       end do
-      allocate (target_at(3,0:4,0:4,mesh%nf), source=0.0_wp)
       do c = 1, 4*mesh%nf
-        if (c /= slots%irregular(face_of(c))) cycle
-        call raised_corner(mesh, c, inner, target_at(:,:,:,face_of(c)))
+        if (slots%inner(c) > 0) then
+          cp(:,slots%inner(c)) = inner(:,c)
+          if (.not. (mesh%seam(c) .or. mesh%seam(previous_corner(c)))) &
+            cp(:,slots%inner(c)) = inside(mesh, c)
+        end if
+        if (mesh%crease(c)) call set_curve()
+      end do
+      do c = 1, 4*mesh%nf
+        if (mesh%seam(c)) call set_curve()
+      end do
+      do v = 1, mesh%nv
+        if (slots%plane(v) > 0 .and. .not. mesh%is_boundary(v)) then
+          if (is_smooth(v)) point(:,v) = mean_about(mesh, v, inner)
+        end if
       end do
     end associate
-    call set_rings(spline, inner, target_at)
-    call set_seams(spline, inner, spline%mesh%x, spoke, arriving)
+    call set_seams(spline, inner, point, spoke, arriving)
+
+  contains
+
+    subroutine set_curve()
+      !! Control points of edge c of a crease or seam.
+      real(wp) :: ends(3,2), near(3,2)
+      integer :: k, v(2)
+
+      v = spline%mesh%vertex([c, next_corner(c)])
+      ends = spline%mesh%x(:,v)
+      associate (slots => spline%slots)
+        do k = 1, 2
+          near(:,k) = ends(:,k)
+          if (slots%beyond(k,c) == 0) then
+            if (smooth%is_open(c)) then
+              near(:,k) = ends(:,k) + share(spline%mesh, slots%beyond(3-k,c), c) &
+                * (ends(:,3-k) - ends(:,k))
+              if (spline%mesh%seam(c) .and. slots%curve_edge(v(k)) /= 0) &
+                call keep_off_crease(merge(c, next_corner(c), k == 1), ends(:,3-k), near(:,k))
+            else
+              near(:,k) = mean_over(spline%mesh, c, k, inner)
+            end if
+          end if
+          if (slots%curve(k,c) > 0) spline%cp(:,slots%curve(k,c)) = near(:,k)
+        end do
+      end associate
+      spoke(:,c) = near(:,1)
+      arriving(:,c) = near(:,2)
+    end subroutine set_curve
+
+    subroutine keep_off_crease(corner, other, near)
+      !! A smooth crease does not run through its vertices: the seam's control point next to it must
+      !! be clearly inside of it.
+      integer, intent(in) :: corner             !! on the crease
+      real(wp), intent(in) :: other(3)          !! vertex at the other end of the seam's edge
+      real(wp), intent(inout) :: near(3)
+
+      real(wp) :: inward(3), x(3)
+
+      x = corner_point(spline, corner)
+      inward = other - x
+      if (dot_product(near - x, inward) < dot_product(inward, inward)/6) near = x + inward/3
+    end subroutine keep_off_crease
+
+    logical function is_smooth(v)
+      !! Whether all edges of an extraordinary point are taken for smooth.
+      integer, intent(in) :: v                  !! the point
+
+      integer :: c, k
+
+      is_smooth = .true.
+      c = smooth%corner(v)
+      do k = 1, smooth%faces(v)
+        is_smooth = is_smooth .and. .not. smooth%seam(c)
+        c = smooth%turn(c)
+      end do
+    end function is_smooth
   end subroutine controls_from_vertices
 
-  pure function curve_point(mesh, beyond, c, k) result(x)
-    !! Control point of a crease or seam.
+  pure function without_short_seams(mesh) result(smooth)
+    !! A mesh with the first edges of long seams only from points that have no short ones.
     type(quad_mesh_type), intent(in) :: mesh
-    integer, intent(in) :: beyond(2)            !! edges that go on at the ends
-    integer, intent(in) :: c                    !! edge
-    integer, intent(in) :: k                    !! 1: at its start, 2: at its end
+    type(quad_mesh_type) :: smooth
+
+    logical :: has_short(mesh%nv)
+    integer :: c
+
+    has_short = .false.
+    do c = 1, 4*mesh%nf
+      if (abs(mesh%bend(c)) > 0 .and. mesh%is_star(mesh%vertex(c))) &
+        has_short(mesh%vertex(c)) = .true.
+    end do
+    smooth = mesh
+    do c = 1, 4*mesh%nf
+      if (has_short(mesh%vertex(c)) .or. has_short(mesh%vertex(next_corner(c)))) &
+        smooth%seam(c) = .false.
+    end do
+  end function without_short_seams
+
+  pure function mean_about(mesh, v, inner) result(x)
+    type(quad_mesh_type), intent(in) :: mesh
+    integer, intent(in) :: v                    !! vertex
+    real(wp), intent(in) :: inner(:,:)          !! (3,4*nf)
     real(wp) :: x(3)
 
-    integer :: v(2)
+    integer :: c, k
 
-    v = mesh%vertex([c, next_corner(c)])
-    x = mesh%x(:,v(k))
-    if (beyond(k) == 0) x = x + share(mesh, beyond(3-k), c)*(mesh%x(:,v(3-k)) - x)
-  end function curve_point
+    x = 0
+    c = mesh%corner(v)
+    do k = 1, mesh%faces(v)
+      x = x + inner(:,c)/mesh%faces(v)
+      c = mesh%turn(c)
+    end do
+  end function mean_about
 
   pure real(wp) function share(mesh, goes_on, c)
     !! Where the second point of a crease lies between its corner and the next vertex: knots
@@ -141,56 +216,7 @@ contains
     end function part
   end function inner_coefficient
 
-  pure subroutine raised_corner(mesh, c, inner, f)
-    !! The bicubic at an extraordinary point, the coefficients that set_rings looks at, in degree 4.
-    type(quad_mesh_type), intent(in) :: mesh
-    integer, intent(in) :: c                    !! corner at the point
-    real(wp), intent(in) :: inner(:,:)          !! inner coefficients (3,4*nf)
-    real(wp), intent(out) :: f(:,0:,0:)         !! (3,0:4,0:4)
-
-    real(wp) :: b(3,0:2,0:2)
-    integer :: k, other
-
-    b(:,1,1) = inner(:,c)
-    b(:,2,1) = inner(:,next_corner(c))
-    b(:,1,2) = inner(:,previous_corner(c))
-    b(:,2,2) = inner(:,next_corner(next_corner(c)))
-    b(:,1,0) = mean_over(c, inner(:,c), inner(:,next_corner(mesh%twin(c))))
-    b(:,2,0) = mean_over(c, b(:,2,1), inner(:,mesh%twin(c)))
-    k = previous_corner(c)
-    b(:,0,1) = mean_over(k, inner(:,c), inner(:,mesh%twin(k)))
-    b(:,0,2) = mean_over(k, b(:,1,2), inner(:,next_corner(mesh%twin(k))))
-    b(:,0,0) = 0
-    other = c
-    do k = 1, mesh%faces(mesh%vertex(c))
-      b(:,0,0) = b(:,0,0) + inner(:,other)/mesh%faces(mesh%vertex(c))
-      other = mesh%turn(other)
-    end do
-    f = 0
-    f(:,0,0) = b(:,0,0)
-    f(:,1,0) = (b(:,0,0) + 3*b(:,1,0))/4
-    f(:,0,1) = (b(:,0,0) + 3*b(:,0,1))/4
-    f(:,1,1) = (b(:,0,0) + 3*b(:,1,0) + 3*b(:,0,1) + 9*b(:,1,1))/16
-    f(:,2,0) = (b(:,1,0) + b(:,2,0))/2
-    f(:,0,2) = (b(:,0,1) + b(:,0,2))/2
-    f(:,2,1) = (b(:,1,0) + b(:,2,0) + 3*b(:,1,1) + 3*b(:,2,1))/8
-    f(:,1,2) = (b(:,0,1) + b(:,0,2) + 3*b(:,1,1) + 3*b(:,1,2))/8
-    f(:,2,2) = (b(:,1,1) + b(:,2,1) + b(:,1,2) + b(:,2,2))/4
-
-  contains
-
-    pure function mean_over(edge, here, there) result(x)
-      integer, intent(in) :: edge               !! seen from the face of `here`
-      real(wp), intent(in) :: here(3), there(3)
-      real(wp) :: x(3)
-
-      associate (h => mesh%interval(previous_corner(edge)))
-        x = (mesh%across(edge)*here + h*there)/(h + mesh%across(edge))
-      end associate
-    end function mean_over
-  end subroutine raised_corner
-
-  subroutine controls_from_jets(spline, jet, target_at)
+  subroutine controls_from_jets(spline, jet)
     !! A spline that follows a smooth surface. Bicubic parts with the continuity of the spline are
     !! reproduced: the control point of a cubic B-spline with the inner knots t-h, t, t+h+ is
     !! f + (h+ - h)/3 f' - h h+/6 f'' at t, and so in two directions.
@@ -198,8 +224,6 @@ contains
     real(wp), intent(in) :: jet(:,0:,0:,:)      !! derivatives at each corner along the edge that
                                                 !! starts there and against the one that ends there,
                                                 !! by the knots (3,0:2,0:2,4*nf)
-    real(wp), intent(in) :: target_at(:,0:,0:,:)   !! quartic Bezier coefficients of irregular faces
-                                                   !! from the extraordinary point (3,0:4,0:4,nf)
 
     real(wp), allocatable :: arriving(:,:), inner(:,:), point(:,:), spoke(:,:)
     integer, allocatable :: times(:)
@@ -214,8 +238,7 @@ contains
       do c = 1, 4*mesh%nf
         inner(:,c) = tensor(jet(:,:,:,c), [0.0_wp, mesh%interval(c)], &
           [0.0_wp, mesh%interval(previous_corner(c))])
-        if (slots%irregular(face_of(c)) > 0 .or. mesh%seam(c) .or. &
-          mesh%seam(previous_corner(c))) then
+        if (mesh%seam(c) .or. mesh%seam(previous_corner(c))) then
           if (slots%inner(c) > 0) call take(slots%inner(c), inner(:,c))
         else
           call take(slots%inner(c), tensor(jet(:,:,:,c), &
@@ -240,7 +263,6 @@ contains
         if (times(a) > 0) cp(:,a) = cp(:,a)/times(a)
       end do
     end associate
-    call set_rings(spline, inner, target_at)
     call set_seams(spline, inner, point, spoke, arriving)
 
   contains

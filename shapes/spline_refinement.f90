@@ -1,13 +1,12 @@
 module spline_refinement
   !! Uniform refinement of unstructured splines: every face becomes four, knot intervals are halved.
-  !! The surface stays exactly as it is where it is bicubic (knot insertion); in the faces of
-  !! extraordinary points, whose condition along the spokes belongs to the spoke's length, and next
-  !! to them, where C1 becomes C2, it is followed by quasi-interpolation: the limit under refinement
-  !! is not the first surface, but near to it.
+  !! The surface stays exactly as it is where it is bicubic and C2 (knot insertion). Beside seams,
+  !! where C1 becomes C2, it is followed by quasi-interpolation: the limit under refinement is not
+  !! the first surface, but near to it. Seams keep their lengths and factors.
   use kinds, only: wp
   use quad_mesh, only: quad_mesh_type, create_quad_mesh, next_corner, previous_corner, face_of
-  use unstructured_spline, only: unstructured_spline_type, create_spline, first_corner, &
-    coefficients_of
+  use seam_lines, only: halve_seams
+  use unstructured_spline, only: unstructured_spline_type, create_spline, coefficients_of
   use spline_controls, only: controls_from_jets
   use bernstein, only: bernstein_1d
   implicit none (type, external)
@@ -55,6 +54,7 @@ contains
       finer%crease(4*c-3) = mesh%crease(c)
       finer%crease(4*c) = mesh%crease(previous_corner(c))
     end do
+    call halve_seams(mesh, finer)
   end subroutine split_faces
 
   subroutine refine_spline(spline, finer, message)
@@ -76,27 +76,22 @@ contains
     type(unstructured_spline_type), intent(in) :: spline
     type(unstructured_spline_type), intent(inout) :: finer
 
-    real(wp), allocatable :: b(:,:), jet(:,:,:,:), target_at(:,:,:,:)
-    integer :: c, child, f, k, p
+    real(wp), allocatable :: b(:,:), jet(:,:,:,:)
+    integer :: c, f, k
 
     allocate (jet(3,0:2,0:2,4*finer%mesh%nf), source=0.0_wp)
-    allocate (target_at(3,0:4,0:4,finer%mesh%nf), source=0.0_wp)
     do f = 1, spline%mesh%nf
       call coefficients_of(spline, f, b)
-      p = spline%degree(f)
-      c = first_corner(spline, f)
       do k = 0, 3
-        child = 4*c - 3
-        call child_jets(b, p, k, spline%mesh%interval([c, previous_corner(c)])/2, &
-          jet(:,:,:,child:child+3))
-        c = next_corner(c)
+        c = 4*f - 3 + k
+        call child_jets(b, spline%degree(f), k, spline%mesh%interval([c, previous_corner(c)])/2, &
+          jet(:,:,:,4*c-3:4*c))
       end do
-      if (p == 4) call quarter(b, target_at(:,:,:,c))
     end do
     do k = 1, finer%mesh%nv
       if (finer%mesh%corner(k) > 0) finer%mesh%x(:,k) = jet(:,0,0,finer%mesh%corner(k))
     end do
-    call controls_from_jets(finer, jet, target_at)
+    call controls_from_jets(finer, jet)
   end subroutine follow_spline
 
   pure function quarter_place(k, xi) result(place)
@@ -225,24 +220,4 @@ contains
       values(k+2,2) = values(k+2,2) + p*(p - 1)*lower(k)
     end do
   end subroutine basis
-
-  pure subroutine quarter(b, f)
-    !! Bezier coefficients of the quarter of a quartic at its origin.
-    real(wp), intent(in) :: b(:,:)              !! (3,25)
-    real(wp), intent(out) :: f(:,0:,0:)         !! (3,0:4,0:4)
-
-    integer :: i, k
-
-    f = reshape(b, [3, 5, 5])
-    do k = 1, 4
-      do i = 4, k, -1
-        f(:,i,:) = (f(:,i,:) + f(:,i-1,:))/2
-      end do
-    end do
-    do k = 1, 4
-      do i = 4, k, -1
-        f(:,:,i) = (f(:,:,i) + f(:,:,i-1))/2
-      end do
-    end do
-  end subroutine quarter
 end module spline_refinement

@@ -6,19 +6,22 @@ module spline_rows
   !! and beyond the face, b_1 = ((h + h+) V_0 + h- V_1)/(h- + h + h+). Coefficients on edges and at
   !! vertices then are the means of those beside them that make the surface C1; where the mesh
   !! is regular the same coefficients are C2. Beyond creases, seams and the boundary intervals are
-  !! 0,
-  !! as for open knot vectors. Next to seams and in irregular faces inner coefficients are control
-  !! points, or follow: functions of vertices are those of the regular spline without what belongs
-  !! to these (truncated), so that all functions sum to one.
+  !! 0, as for open knot vectors. Next to seams inner coefficients are control points, or follow:
+  !! functions of vertices are those of the regular spline without what belongs to these
+  !! (truncated), so that all functions sum to one.
+  !!
+  !! Beside a short seam A is quadratic, and A f_,u a quartic. Its cubic with the same values and
+  !! slopes at both ends of the edge stands in its place here (touching_gluing); the rest vanishes
+  !! with its slopes at both ends (`quartic_rest`).
   use kinds, only: wp
-  use quad_mesh, only: quad_mesh_type, next_corner, previous_corner, face_of
-  use point_joint, only: plane_rows, twist_rows, alternating_rest
+  use quad_mesh, only: quad_mesh_type, next_corner, previous_corner
+  use point_joint, only: plane_rows, boundary_plane_rows, twist_rows, alternating_rest
+  use seam_lines, only: binds, touching_gluing
   use spline_slots, only: slots_type
   use sparse_row, only: row_type, clear, add_term, add_row, add_scaled_term
-  use extraordinary_ring, only: ring_type, dependent_spoke
   implicit none (type, external)
   private
-  public :: spline_space_type, start_ring, cubic_coefficients
+  public :: spline_space_type, cubic_coefficients, quartic_rest
 
   type :: spline_space_type
     type(quad_mesh_type) :: mesh
@@ -27,63 +30,59 @@ module spline_rows
 
 contains
 
-  pure subroutine start_ring(spline, v, ring)
-    !! Intervals and own control points.
-    class(spline_space_type), intent(in) :: spline
-    integer, intent(in) :: v                     !! extraordinary point
-    type(ring_type), intent(out) :: ring
-
-    integer :: c, k
-
-    associate (n => spline%mesh%faces(v))
-      ring%n = n
-      allocate (ring%d(n), ring%b(0:3,0:3,n), ring%middle(n), ring%centre(n))
-      ring%plane = spline%slots%plane(v)
-      ring%twist = spline%slots%twist(v)
-      c = spline%mesh%corner(v)
-      do k = 1, n
-        ring%d(k) = spline%mesh%interval(c)
-        ring%middle(k) = spline%slots%middle(c)
-        ring%centre(k) = spline%slots%centre(face_of(c))
-        c = spline%mesh%turn(c)
-      end do
-    end associate
-  end subroutine start_ring
-
-  pure subroutine cubic_coefficients(spline, c, all_of_them, b)
-    !! Of a face as a bicubic; of an irregular one those that have an index 2 or 3.
+  pure subroutine cubic_coefficients(spline, c, b)
+    !! Of a face as a bicubic.
     class(spline_space_type), intent(in) :: spline
     integer, intent(in) :: c                     !! corner at the origin
-    logical, intent(in) :: all_of_them
     type(row_type), intent(inout) :: b(0:3,0:3)
 
     integer :: c2, c3, c4
-    type(row_type) :: unused
 
     c2 = next_corner(c)
     c3 = next_corner(c2)
     c4 = next_corner(c3)
-    if (all_of_them) then
-      call inner_row(spline, c, b(1,1))
-      call vertex_row(spline, c, b(0,0))
-      call edge_rows(spline, c, b(1,0), b(2,0))
-      call edge_rows(spline, c4, b(0,2), b(0,1))
-    else
-      call edge_rows(spline, c, unused, b(2,0))
-      call edge_rows(spline, c4, b(0,2), unused)
-    end if
+    call inner_row(spline, c, b(1,1))
     call inner_row(spline, c2, b(2,1))
     call inner_row(spline, c3, b(2,2))
     call inner_row(spline, c4, b(1,2))
+    call vertex_row(spline, c, b(0,0))
     call vertex_row(spline, c2, b(3,0))
     call vertex_row(spline, c3, b(3,3))
     call vertex_row(spline, c4, b(0,3))
+    call edge_rows(spline, c, b(1,0), b(2,0))
     call edge_rows(spline, c2, b(3,1), b(3,2))
     call edge_rows(spline, c3, b(2,3), b(1,3))
+    call edge_rows(spline, c4, b(0,2), b(0,1))
   end subroutine cubic_coefficients
 
+  pure subroutine quartic_rest(spline, c, s, row)
+    !! What a short seam adds to its face f on one side: with A'' = 2 B and the trace's s''' the
+    !! rest of A f_,u/d is B s'''/(2 d) u^2 (1-u)^2, of which each side takes half,
+    !!
+    !!     f := f + q B s'''/(4 d) u^2 (1-u)^2 v (1-v)^3,
+    !!
+    !! a multiple of one Bernstein polynomial of degree 4, which touches no other edge.
+    class(spline_space_type), intent(in) :: spline
+    integer, intent(in) :: c                     !! corner that the seam's edge starts from
+    type(row_type), intent(in) :: s(0:3)         !! Bezier coefficients of the trace
+    type(row_type), intent(inout) :: row         !! the quartic coefficient in the edge's middle,
+                                                 !! one row inside
+
+    real(wp), parameter :: differences(0:3) = [-1.0_wp, 3.0_wp, -3.0_wp, 1.0_wp]
+    real(wp) :: factor
+    integer :: k
+
+    associate (mesh => spline%mesh)
+      ! u^2 (1-u)^2 v (1-v)^3 is the Bernstein polynomial over 6 and 4, s''' six third differences
+      factor = mesh%interval(previous_corner(c))*mesh%bend(c)/(16*mesh%interval(c))
+    end associate
+    do k = 0, 3
+      call add_row(row, factor*differences(k), s(k))
+    end do
+  end subroutine quartic_rest
+
   pure recursive subroutine inner_row(spline, c, row)
-    !! Inner Bezier coefficient next to a corner; empty at a compact point.
+    !! Inner Bezier coefficient next to a corner.
     class(spline_space_type), intent(in) :: spline
     integer, intent(in) :: c                     !! corner
     type(row_type), intent(inout) :: row
@@ -93,12 +92,8 @@ contains
     integer :: last, next, opposite
 
     call clear(row)
-    if (spline%slots%irregular(face_of(c)) > 0) then
-      if (spline%slots%dependent(c) > 0) then
-        call dependent_row(spline, spline%slots%dependent(c), row)
-      else if (spline%slots%inner(c) > 0) then
-        call add_term(row, spline%slots%inner(c))
-      end if
+    if (spline%slots%inner(c) < 0) then
+      call solved_inner_row(spline, c, row)
       return
     end if
     last = previous_corner(c)
@@ -142,24 +137,29 @@ contains
     end associate
   end subroutine inner_row
 
-  pure recursive subroutine dependent_row(spline, v, row)
+  pure recursive subroutine solved_inner_row(spline, c, row)
+    !! Inner coefficient where a short seam of one edge fades, from the trace's coefficient, the
+    !! mean of those of both sides, which follows from the extraordinary point's condition.
     class(spline_space_type), intent(in) :: spline
-    integer, intent(in) :: v                     !! extraordinary point with an even number of faces
+    integer, intent(in) :: c                     !! corner at the end of the seam's edge
     type(row_type), intent(inout) :: row
 
-    type(ring_type) :: ring
-    integer :: c, k
+    type(row_type) :: mean, there
+    real(wp) :: h(2)
+    integer :: spoke, v
 
-    call start_ring(spline, v, ring)
-    c = spline%mesh%corner(v)
-    do k = 1, ring%n
-      call clear(ring%b(2,1,k))
-      if (k < ring%n) call inner_row(spline, next_corner(c), ring%b(2,1,k))
-      call inner_row(spline, previous_corner(c), ring%b(1,2,k))
-      c = spline%mesh%turn(c)
-    end do
-    call dependent_spoke(ring, ring%b(1,2,ring%n-1), row)
-  end subroutine dependent_row
+    v = -spline%slots%inner(c)
+    spoke = spline%slots%solved(v)
+    call solved_row(spline, v, mean)
+    associate (mesh => spline%mesh, t => spline%mesh%twin(spoke))
+      ! intervals on this side and on the other
+      h = mesh%interval([previous_corner(spoke), next_corner(t)])
+      if (c == t) h = h([2, 1])
+      call inner_row(spline, merge(next_corner(spoke), t, c == t), there)
+    end associate
+    call add_row(row, sum(h)/h(2), mean)
+    call add_row(row, -h(1)/h(2), there)
+  end subroutine solved_inner_row
 
   pure recursive subroutine following_row(spline, c, row)
     !! Inner coefficient next to a seam on the side that follows: k = 1 or 2 of
@@ -175,12 +175,12 @@ contains
 
     associate (mesh => spline%mesh)
       edge = c
-      if (.not. mesh%seam(c)) edge = previous_corner(c)
+      if (.not. binds(mesh, c, 1)) edge = previous_corner(c)
       t = mesh%twin(edge)
       d = mesh%interval(edge)
       q = mesh%interval(previous_corner(edge))
       r = mesh%interval(next_corner(t))
-      a = mesh%gluing(:,edge)
+      a = touching_gluing(mesh, edge, merge(1, 2, edge == c))
       call edge_rows(spline, edge, s(1), s(2))
       if (edge == c) then
         call inner_row(spline, next_corner(t), lead)
@@ -220,9 +220,12 @@ contains
       d(n) = spline%mesh%interval(previous_corner(c))
       c = spline%mesh%turn(c)
     end do
-    if (.not. spline%mesh%is_boundary(v)) d(n) = spline%mesh%interval(next_corner( &
-      spline%mesh%twin(spline%mesh%corner(v))))
-    call plane_rows(d, spline%mesh%angle(v), spline%slots%plane(v), s0, s1)
+    if (spline%mesh%is_boundary(v)) then
+      call boundary_plane_rows(d, spline%mesh%angle(v), spline%slots%plane(v), s0, s1)
+    else
+      d(n) = spline%mesh%interval(next_corner(spline%mesh%twin(spline%mesh%corner(v))))
+      call plane_rows(d, spline%mesh%angle(v), spline%slots%plane(v), s0, s1)
+    end if
   end subroutine point_rows
 
   pure recursive subroutine twist_sums(spline, v, without, d, s0, s1, r)
@@ -246,7 +249,7 @@ contains
     do k = 1, size(r)
       call clear(r(k))
       if (k /= without .and. spline%mesh%seam(c)) then
-        a = spline%mesh%gluing(:,c) / (3*d(k)**2)
+        a = touching_gluing(spline%mesh, c, 1) / (3*d(k)**2)
         call edge_rows(spline, c, unused, s2)
         call add_row(r(k), 2*a(1), s2)
         call add_row(r(k), a(2) - 5*a(1), s1(k))
@@ -265,31 +268,59 @@ contains
     type(row_type) :: s0
     type(row_type), allocatable :: s1(:), r(:), t(:)
     real(wp), allocatable :: d(:)
-    integer :: after, c, k, v
+    integer :: after, c, k, n, v
 
     v = spline%mesh%vertex(corner)
-    call twist_sums(spline, v, 0, d, s0, s1, r)
-    allocate (t(size(r)))
-    call clear(t(1))
-    if (spline%slots%twist(v) > 0) then
-      call add_scaled_term(t(1), 1/(d(1)*d(2)), spline%slots%twist(v))
-      call add_row(t(1), -1/(d(1)*d(2)), s1(1))
-      call add_row(t(1), -1/(d(1)*d(2)), s1(2))
-      call add_row(t(1), 1/(d(1)*d(2)), s0)
-    end if
-    call twist_rows(r, spline%slots%twist(v) == 0, t)
+    n = spline%mesh%faces(v)
     k = 1
     c = spline%mesh%corner(v)
     do while (c /= corner)
       c = spline%mesh%turn(c)
       k = k + 1
     end do
+    if (spline%slots%twist(v) > 0 .and. k == 1) then
+      call add_term(row, spline%slots%twist(v))
+      return
+    else if (has_two_twists(spline, v) .and. k == n) then
+      call add_term(row, spline%slots%twist(v) + 1)
+      return
+    end if
+    call twist_sums(spline, v, 0, d, s0, s1, r)
+    allocate (t(n))
+    call clear(t(1))
+    if (spline%slots%twist(v) > 0) call given_twist(spline%slots%twist(v), 1, d, s0, s1, t(1))
+    call twist_rows(r, spline%slots%twist(v) == 0, t)
     after = mod(k, size(d)) + 1
     call add_row(row, -1.0_wp, s0)
     call add_row(row, 1.0_wp, s1(k))
     call add_row(row, 1.0_wp, s1(after))
     call add_row(row, d(k)*d(after), t(k))
   end subroutine corner_row
+
+  pure logical function has_two_twists(spline, v)
+    class(spline_space_type), intent(in) :: spline
+    integer, intent(in) :: v                     !! extraordinary point
+
+    has_two_twists = spline%slots%solved(v) > 0 .and. spline%mesh%is_boundary(v)
+  end function has_two_twists
+
+  pure subroutine given_twist(id, k, d, s0, s1, t)
+    !! The twist of a face whose inner coefficient at the point is a control point.
+    integer, intent(in) :: id, k                 !! control point; face, between spokes k and k+1
+    real(wp), intent(in) :: d(:)                 !! intervals of the spokes
+    type(row_type), intent(in) :: s0, s1(:)      !! see point_rows
+    type(row_type), intent(inout) :: t
+
+    real(wp) :: factor
+    integer :: after
+
+    after = mod(k, size(d)) + 1
+    factor = 1/(d(k)*d(after))
+    call add_scaled_term(t, factor, id)
+    call add_row(t, -factor, s1(k))
+    call add_row(t, -factor, s1(after))
+    call add_row(t, factor, s0)
+  end subroutine given_twist
 
   pure recursive subroutine curve_row(spline, c, k, row)
     !! Control point of a crease or seam at an end of an edge.
@@ -309,6 +340,8 @@ contains
       call add_term(row, id)
     else if (id < 0) then
       call solved_row(spline, -id, row)
+    else if (spline%mesh%fades(k,c)) then
+      call mean_row(spline, c, k, row)
     else
       if (k == 1) then
         v = spline%mesh%vertex(c)
@@ -330,32 +363,40 @@ contains
   end subroutine curve_row
 
   pure recursive subroutine solved_row(spline, v, row)
-    !! Control point of a seam that follows from the condition of a point of an even number of
-    !! faces.
+    !! Control point of a seam at the end of the edge that `solved` names, from the alternating
+    !! sum of the twists' conditions: 0, on the boundary the first twist and, with sign, the last
+    !! one.
     class(spline_space_type), intent(in) :: spline
     integer, intent(in) :: v                     !! the point
     type(row_type), intent(inout) :: row
 
-    type(row_type) :: rest, s0
+    type(row_type) :: ends, rest, s0
     type(row_type), allocatable :: s1(:), r(:)
     real(wp), allocatable :: d(:)
     real(wp) :: a(2), factor, h_after, other
-    integer :: c, k
+    integer :: c, k, n
 
     associate (mesh => spline%mesh)
       c = mesh%corner(v)
       k = 1
-      do while (spline%slots%solved(mesh%vertex(next_corner(c))) /= v)
+      do while (c /= spline%slots%solved(v))
         c = mesh%turn(c)
         k = k + 1
       end do
       call twist_sums(spline, v, k, d, s0, s1, r)
       call alternating_rest(r, k, rest)
+      if (has_two_twists(spline, v)) then
+        n = mesh%faces(v)
+        call given_twist(spline%slots%twist(v) + 1, n, d, s0, s1, ends)
+        if (mod(n, 2) == 1) ends%c = -ends%c
+        call given_twist(spline%slots%twist(v), 1, d, s0, s1, ends)
+        call add_row(rest, 1.0_wp*(-1)**k, ends)
+      end if
       h_after = 0
       if (spline%slots%beyond(2,c) /= 0) h_after = mesh%interval(abs(spline%slots%beyond(2,c)))
       other = h_after/(d(k) + h_after)
       ! s_2 = (1 - other) row + other s_1 = s_1 + (3 d^2 r - (A_1 - 3 A_0)(s_1 - s_0))/(2 A_0)
-      a = mesh%gluing(:,c)
+      a = touching_gluing(mesh, c, 1)
       factor = 1/(1 - other)
       call add_row(row, factor*3*d(k)**2/(2*a(1)), rest)
       call add_row(row, factor*(1 - other - (a(2) - 3*a(1))/(2*a(1))), s1(k))
@@ -372,7 +413,6 @@ contains
 
     type(row_type) :: here, there
     real(wp) :: h, h_after, h_before, own, other
-    integer :: t
 
     call clear(first)
     call clear(second)
@@ -393,19 +433,31 @@ contains
         if (other > 0) call add_row(second, other, here)
         return
       end if
-      t = mesh%twin(c)
-      own = mesh%interval(previous_corner(c))
-      other = mesh%interval(next_corner(t))
-      call inner_row(spline, c, here)
-      call inner_row(spline, next_corner(t), there)
-      call add_row(first, other/(own + other), here)
-      call add_row(first, own/(own + other), there)
-      call inner_row(spline, next_corner(c), here)
-      call inner_row(spline, t, there)
-      call add_row(second, other/(own + other), here)
-      call add_row(second, own/(own + other), there)
+      call mean_row(spline, c, 1, first)
+      call mean_row(spline, c, 2, second)
     end associate
   end subroutine edge_rows
+
+  pure recursive subroutine mean_row(spline, c, k, row)
+    !! Coefficient of an edge between the inner ones beside it, so that the surface is C1.
+    class(spline_space_type), intent(in) :: spline
+    integer, intent(in) :: c                     !! corner that the edge starts from
+    integer, intent(in) :: k                     !! 1: next to its start, 2: to its end
+    type(row_type), intent(inout) :: row
+
+    type(row_type) :: here, there
+    real(wp) :: other, own
+    integer :: t
+
+    t = spline%mesh%twin(c)
+    own = spline%mesh%interval(previous_corner(c))
+    other = spline%mesh%interval(next_corner(t))
+    call inner_row(spline, merge(c, next_corner(c), k == 1), here)
+    call inner_row(spline, merge(next_corner(t), t, k == 1), there)
+    call clear(row)
+    call add_row(row, other/(own + other), here)
+    call add_row(row, own/(own + other), there)
+  end subroutine mean_row
 
   pure recursive subroutine vertex_row(spline, c, row)
     !! The Bezier coefficient at a vertex.

@@ -6,43 +6,37 @@ module spline_slots
   !!   point on the crease and one inside for each of its sides. Where the crease has a corner it
   !!   carries the corner itself, a point on each crease edge and one inside each corner.
   !! - A seam (seam_lines) has points like a crease, and inner Bezier coefficients on one of its
-  !!   sides; those on the other side follow.
-  !! - The faces of a compact extraordinary point have, but for the corner at the point itself,
-  !! their
-  !!   inner Bezier coefficients as control points: the spline is once differentiable around them.
-  !!   A vertex that has no other faces has no function then. Each of these faces has two more
-  !!   (`middle`, beside the edge at whose corner it is stored, and `centre`).
+  !!   sides; those on the other side follow. Where a short seam fades, it has those of both sides,
+  !!   and no point: the spline is once differentiable there.
   !! - An extraordinary point has three control points of a triangle in its tangent plane, and one
-  !!   more (`twist`) when the number of its faces is even; one inner coefficient of a compact
-  !!   point or one point of a seam then follows from the others (`dependent`, `solved`). A vertex
-  !!   of more than two faces on the boundary has a plane and a twist.
+  !!   more (`twist`) when the number of its faces is even; one control point at the other end of
+  !!   one of its edges then follows from the others (`solved`). A vertex of more than two faces on
+  !!   the boundary has a plane and two twists, those of the faces at the boundary, so that slopes
+  !!   across it are these and no others; where nothing can be solved for, the first twist only.
+  use kinds, only: wp
   use extraction_mesh, only: whole_number
   use quad_mesh, only: quad_mesh_type, next_corner, previous_corner, face_of
-  use seam_lines, only: straight_on
+  use seam_lines, only: straight_on, binds
   implicit none (type, external)
   private
   public :: slots_type, number_slots
 
   type :: slots_type
     integer :: n = 0                         !! control points
-    integer, allocatable :: irregular(:)     !! corner at the extraordinary point of each face, 0:
-                                             !! there is none (nf)
-    integer, allocatable :: inner(:)         !! control point inside at each corner; of irregular
-                                             !! faces their own ones, 0 at the point itself (4*nf)
+    integer, allocatable :: inner(:)         !! control point inside at each corner; < 0: see
+                                             !! solved; 0: an extraordinary point, or it follows
+                                             !! from a seam (4*nf)
     integer, allocatable :: curve(:,:)       !! those of the edges of creases and seams at start and
-                                             !! end; < 0: see solved; 0: an extraordinary point
-                                             !! (2,4*nf)
+                                             !! end; < 0: see solved; 0: an extraordinary point, or
+                                             !! a short seam fades (2,4*nf)
     integer, allocatable :: beyond(:,:)      !! crease edge that goes on smoothly at start and end:
                                              !! > 0 away from it, < 0 towards it, 0: none (2,4*nf)
     integer, allocatable :: vertex(:)        !! corner of a crease (nv)
     integer, allocatable :: plane(:)         !! first of three at an extraordinary point (nv)
-    integer, allocatable :: middle(:)        !! (4*nf)
-    integer, allocatable :: centre(:)        !! (nf)
-    integer, allocatable :: twist(:)         !! (nv)
-    integer, allocatable :: dependent(:)     !! extraordinary point from whose ring the inner
-                                             !! coefficient at a corner follows (4*nf)
-    integer, allocatable :: solved(:)        !! extraordinary point from whose condition the control
-                                             !! point of a seam at a vertex follows (nv)
+    integer, allocatable :: twist(:)         !! the first one (nv)
+    integer, allocatable :: solved(:)        !! edge from each extraordinary point at whose end a
+                                             !! control point follows from the point's condition,
+                                             !! and bears its number with a minus; 0: none (nv)
     integer, allocatable :: curve_edge(:)    !! a smooth crease edge that leaves (> 0) or meets
                                              !! (< 0) each vertex, 0: none (nv)
   end type slots_type
@@ -57,13 +51,10 @@ contains
     integer :: v
 
     message = ''
-    allocate (slots%irregular(mesh%nf), slots%centre(mesh%nf), source=0)
-    allocate (slots%inner(4*mesh%nf), slots%middle(4*mesh%nf), slots%dependent(4*mesh%nf), source=0)
+    allocate (slots%inner(4*mesh%nf), source=0)
     allocate (slots%curve(2,4*mesh%nf), slots%beyond(2,4*mesh%nf), source=0)
     allocate (slots%vertex(mesh%nv), slots%plane(mesh%nv), slots%twist(mesh%nv), &
       slots%curve_edge(mesh%nv), slots%solved(mesh%nv), source=0)
-    call find_irregular_faces(mesh, slots, message)
-    if (len(message) > 0) return
     call find_solved(mesh, slots, message)
     if (len(message) > 0) return
     do v = 1, mesh%nv
@@ -73,94 +64,98 @@ contains
     end do
   end subroutine number_slots
 
-  pure subroutine find_irregular_faces(mesh, slots, message)
-    type(quad_mesh_type), intent(in) :: mesh
-    type(slots_type), intent(inout) :: slots
-    character(:), allocatable, intent(inout) :: message
-
-    integer :: c, f, v
-
-    do c = 1, 4*mesh%nf
-      if (.not. mesh%compact(mesh%vertex(c)) .or. mesh%is_boundary(mesh%vertex(c))) cycle
-      f = face_of(c)
-      if (slots%irregular(f) > 0) then
-        message = 'face ' // whole_number(f) // ' has two extraordinary points, vertices ' // &
-          whole_number(mesh%vertex(slots%irregular(f))) // ' and ' // &
-          whole_number(mesh%vertex(c)) // ': refine the mesh once, so that they lie in different ' &
-          // 'faces'
-        return
-      end if
-      slots%irregular(f) = c
-    end do
-    ! the last face's coefficient at the far end of its first edge
-    do v = 1, mesh%nv
-      if (.not. mesh%compact(v) .or. mod(mesh%faces(v), 2) == 1 .or. mesh%is_boundary(v)) cycle
-      c = next_corner(mesh%twin(mesh%corner(v)))
-      slots%dependent(next_corner(c)) = v
-    end do
-  end subroutine find_irregular_faces
-
   subroutine find_solved(mesh, slots, message)
-    !! For points of an even number of faces with seams: a seam's control point two edges at least
-    !! away from other extraordinary points.
+    !! For points with an equation to solve: an edge at whose end a control point can follow without
+    !! regard to other such points.
     type(quad_mesh_type), intent(in) :: mesh
     type(slots_type), intent(inout) :: slots
     character(:), allocatable, intent(inout) :: message
 
-    integer :: c, k, v, w
+    integer :: c, k, t, v
 
     points: do v = 1, mesh%nv
-      if (.not. mesh%is_extraordinary(v) .or. mesh%compact(v) .or. mod(mesh%faces(v), 2) == 1) cycle
+      if (.not. has_equation(mesh, v)) cycle
       c = mesh%corner(v)
       do k = 1, mesh%faces(v)
-        w = mesh%vertex(next_corner(c))
-        if (.not. mesh%is_star(w)) then
-          if (.not. any_crease(w)) then
-            if (mesh%is_star(mesh%vertex(next_corner(straight_on(mesh, c))))) w = 0
-          end if
-          if (w > 0) then
-            slots%solved(w) = v
-            cycle points
-          end if
+        slots%solved(v) = c
+        if (mesh%seam(c) .and. .not. mesh%fades(2,c)) then
+          if (runs_on(mesh, c)) cycle points
+        else if (mesh%seam(c)) then
+          t = mesh%twin(c)
+          if (is_free(mesh, next_corner(c))) slots%inner(next_corner(c)) = -v
+          if (slots%inner(next_corner(c)) == -v) cycle points
+          if (is_free(mesh, mesh%twin(previous_corner(t)))) slots%inner(t) = -v
+          if (slots%inner(t) == -v) cycle points
         end if
         c = mesh%turn(c)
       end do
+      slots%solved(v) = 0
+      if (mesh%is_boundary(v)) cycle
       message = 'extraordinary point ' // whole_number(v) // ' has ' // &
         whole_number(mesh%faces(v)) // ' faces, and other extraordinary points at the distance ' &
-        // 'of one or two edges along all of its edges: refine the mesh once'
+        // 'of one or two edges along all of its edges: refine the mesh once or twice'
       return
     end do points
-
-  contains
-
-    logical function any_crease(w)
-      integer, intent(in) :: w               !! vertex
-
-      integer :: k, other
-
-      any_crease = mesh%is_boundary(w)
-      other = mesh%corner(w)
-      do k = 1, mesh%faces(w)
-        if (any_crease) return
-        any_crease = mesh%crease(other)
-        other = mesh%turn(other)
-      end do
-    end function any_crease
   end subroutine find_solved
+
+  pure logical function has_equation(mesh, v)
+    !! Points of an even number of faces, and those on the boundary unless their A is too small to
+    !! solve for what it acts on.
+    type(quad_mesh_type), intent(in) :: mesh
+    integer, intent(in) :: v                 !! vertex
+
+    has_equation = mesh%is_star(v)
+    if (.not. has_equation) return
+    if (mesh%is_boundary(v)) then
+      has_equation = abs(cos(mesh%angle(v))) > 0.05_wp
+    else
+      has_equation = mod(mesh%faces(v), 2) == 0
+    end if
+  end function has_equation
+
+  pure logical function runs_on(mesh, c)
+    !! Whether the control point of a seam at the end of its first edge belongs to no other point:
+    !! it does where the seam ends there or one edge later.
+    type(quad_mesh_type), intent(in) :: mesh
+    integer, intent(in) :: c                 !! corner that the edge starts from
+
+    integer :: k, other, w
+
+    w = mesh%vertex(next_corner(c))
+    runs_on = .not. mesh%is_star(w)
+    if (.not. runs_on .or. mesh%is_boundary(w)) return
+    other = mesh%corner(w)
+    do k = 1, mesh%faces(w)
+      if (mesh%crease(other)) return
+      other = mesh%turn(other)
+    end do
+    runs_on = .not. mesh%is_star(mesh%vertex(next_corner(straight_on(mesh, c))))
+  end function runs_on
+
+  pure logical function is_free(mesh, c)
+    !! Whether an edge, at whose start a short seam fades, is on no other seam, but for one that
+    !! fades as well and comes from a point without equation.
+    type(quad_mesh_type), intent(in) :: mesh
+    integer, intent(in) :: c                 !! corner that the edge starts from
+
+    is_free = .not. mesh%seam(c)
+    if (mesh%seam(c) .and. mesh%fades(1,c)) &
+      is_free = .not. has_equation(mesh, mesh%vertex(next_corner(c)))
+  end function is_free
 
   pure logical function leads(mesh, c)
     !! Whether the inner coefficient at a corner is next to a seam and a control point: of the two
-    !! sides of a seam's edge one leads and the other follows from the seam's condition.
+    !! sides of a seam's edge one leads and the other follows from the seam's condition, if this
+    !! binds.
     type(quad_mesh_type), intent(in) :: mesh
     integer, intent(in) :: c                 !! corner
 
-    leads = .false.
-    if (mesh%seam(c) .eqv. mesh%seam(previous_corner(c))) return
-    if (mesh%seam(c)) then
-      leads = c < mesh%twin(c)
-    else
-      leads = previous_corner(c) < mesh%twin(previous_corner(c))
-    end if
+    integer :: last
+
+    last = previous_corner(c)
+    leads = mesh%seam(c) .or. mesh%seam(last)
+    if (binds(mesh, c, 1)) leads = c < mesh%twin(c)
+    if (binds(mesh, last, 2)) leads = last < mesh%twin(last)
   end function leads
 
   subroutine number_vertex(mesh, v, slots, message)
@@ -178,18 +173,12 @@ contains
       fan(k) = mesh%turn(fan(k-1))
     end do
     if (mesh%is_star(v)) then
-      if (mesh%compact(v) .and. mesh%is_boundary(v)) then
-        message = 'vertex ' // whole_number(v) // ' of the boundary has ' // whole_number(n) // &
-          ' faces, and lines of edges from there cross those of other such vertices: one or two ' &
-          // 'faces are supported there'
-        return
-      end if
       slots%plane(v) = slots%n + 1
       slots%n = slots%n + 3
-      if (mesh%compact(v)) call number_ring(fan, slots)
       if (mod(n, 2) == 0 .or. mesh%is_boundary(v)) then
+        slots%twist(v) = slots%n + 1
         slots%n = slots%n + 1
-        slots%twist(v) = slots%n
+        if (mesh%is_boundary(v) .and. slots%solved(v) > 0) slots%n = slots%n + 1
       end if
       return
     end if
@@ -222,11 +211,11 @@ contains
 
     subroutine number_seam()
       !! The trace of a seam that runs through or ends here.
-      integer :: i, through
+      integer :: from, i, k, through
 
       through = 0
       do i = 1, n
-        if (.not. mesh%seam(fan(i))) cycle
+        if (.not. binds(mesh, fan(i), 1)) cycle
         if (through > 0 .and. nc == 0) then
           call set_curve(fan(i), curve_of(through))
           call set_beyond(fan(i), through)
@@ -235,8 +224,13 @@ contains
           cycle
         end if
         through = fan(i)
-        if (slots%solved(v) > 0) then
-          call set_curve(fan(i), -slots%solved(v))
+        from = 0
+        do k = 1, n
+          if (binds(mesh, fan(k), 1) .and. (k == i .or. nc == 0)) &
+            from = max(from, solved_from(mesh%twin(fan(k))))
+        end do
+        if (from > 0) then
+          call set_curve(fan(i), -from)
         else
           slots%n = slots%n + 1
           call set_curve(fan(i), slots%n)
@@ -244,16 +238,25 @@ contains
       end do
     end subroutine number_seam
 
+    integer function solved_from(edge)
+      !! The extraordinary point whose condition the control point at the end of an edge follows
+      !! from, 0: none.
+      integer, intent(in) :: edge
+
+      solved_from = 0
+      if (slots%solved(mesh%vertex(edge)) == edge) solved_from = mesh%vertex(edge)
+    end function solved_from
+
     subroutine number_inner(corners)
-      !! One function of a smooth fan, and own coefficients in its irregular faces.
+      !! One function of a smooth fan, and own coefficients beside seams.
       integer, intent(in) :: corners(:)
 
       integer :: i, shared
 
       shared = 0
       do i = 1, size(corners)
-        if (slots%dependent(corners(i)) > 0) cycle
-        if (slots%irregular(face_of(corners(i))) > 0 .or. leads(mesh, corners(i))) then
+        if (slots%inner(corners(i)) < 0) cycle
+        if (leads(mesh, corners(i))) then
           slots%n = slots%n + 1
           slots%inner(corners(i)) = slots%n
         else if (mesh%seam(corners(i)) .or. mesh%seam(previous_corner(corners(i)))) then
@@ -341,18 +344,4 @@ contains
       if (mesh%twin(abs(edge)) > 0) slots%beyond(merge(2, 1, edge > 0),mesh%twin(abs(edge))) = other
     end subroutine set_beyond
   end subroutine number_vertex
-
-  pure subroutine number_ring(fan, slots)
-    !! What belongs to the faces of a compact point.
-    integer, intent(in) :: fan(:)            !! its corners, counter-clockwise
-    type(slots_type), intent(inout) :: slots
-
-    integer :: k
-
-    do k = 1, size(fan)
-      slots%middle(fan(k)) = slots%n + 1
-      slots%centre(face_of(fan(k))) = slots%n + 2
-      slots%n = slots%n + 2
-    end do
-  end subroutine number_ring
 end module spline_slots

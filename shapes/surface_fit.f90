@@ -7,6 +7,7 @@ module surface_fit
   use extraction_mesh, only: extraction_mesh_type
   use gauss_rules, only: tensor_rule
   use rational_basis, only: shape_functions
+  use linear_rows, only: linear_rows_type
   implicit none (type, external)
   private
   public :: target_surface, fit_surface, distance_to
@@ -38,25 +39,28 @@ module surface_fit
     real(wp), allocatable :: value(:), diagonal(:)
   end type normal_matrix
 
+  real(wp), parameter :: negligible = 1e-13_wp     !! part of a step, relative to the size of all
+
 contains
 
-  subroutine fit_surface(mesh, surface, held, rounds)
+  subroutine fit_surface(mesh, surface, held, rows, rounds)
     type(extraction_mesh_type), intent(inout), target :: mesh   !! surfaces; weights stay
     class(target_surface), intent(in) :: surface
     logical, intent(in) :: held(:,:)               !! coordinates that stay (3,nn)
+    type(linear_rows_type), intent(in) :: rows(3)  !! that the steps of each coordinate obey
     integer, intent(in) :: rounds                  !! times that closest points are looked for
 
     type(samples_type), allocatable :: samples(:)
     type(normal_matrix) :: matrix
     real(wp), allocatable :: rhs(:,:), step(:,:)
-    real(wp) :: first
+    real(wp) :: enough
     integer, pointer, contiguous :: ix(:)
     integer :: e, k
 
     call take_samples(mesh, 1, samples)
     call form_matrix(mesh, samples, matrix)
     allocate (rhs(3,mesh%nn), step(3,mesh%nn))
-    first = 0
+    enough = (negligible*maxval(abs(mesh%x)))**2*sum(matrix%diagonal)
     do k = 1, rounds
       rhs = 0
       do e = 1, mesh%elements%ne
@@ -64,7 +68,8 @@ contains
         call add_differences(samples(e), mesh%x(:,ix), ix)
       end do
       where (held) rhs = 0
-      call solve(matrix, held, rhs, first, step)
+      call project(rows, rhs)
+      call solve(matrix, held, rows, rhs, enough, step)
       mesh%x = mesh%x + step
     end do
 
@@ -87,6 +92,21 @@ contains
       end do
     end subroutine add_differences
   end subroutine fit_surface
+
+  subroutine project(rows, x)
+    type(linear_rows_type), intent(in) :: rows(3)
+    real(wp), intent(inout) :: x(:,:)
+
+    real(wp) :: values(size(x, 2))
+    integer :: i
+
+    do i = 1, 3
+      if (rows(i)%n == 0) cycle
+      values = x(i,:)
+      call rows(i)%project(values)
+      x(i,:) = values
+    end do
+  end subroutine project
 
   subroutine form_matrix(mesh, samples, matrix)
     !! sum_g w_g R_a R_b, row by row from the elements of each node.
@@ -162,17 +182,16 @@ contains
     call move_alloc(value, matrix%value)
   end subroutine make_room
 
-  pure subroutine solve(matrix, held, rhs, first, x)
+  subroutine solve(matrix, held, rows, rhs, enough, x)
     !! Conjugate gradients with the diagonal for the three coordinates at once.
     type(normal_matrix), intent(in) :: matrix
     logical, intent(in) :: held(:,:)
+    type(linear_rows_type), intent(in) :: rows(3)
     real(wp), intent(in) :: rhs(:,:)
-    real(wp), intent(inout) :: first               !! size of the first round's right-hand side, 0 before: it sets the
-                                                   !! accuracy of all rounds
+    real(wp), intent(in) :: enough                 !! r^T (diagonal)^-1 r that may be left [length^2]
     real(wp), intent(out) :: x(:,:)
 
     integer, parameter :: most_steps = 1000
-    real(wp), parameter :: small = 1e-14_wp
     real(wp), allocatable :: p(:,:), q(:,:), r(:,:), z(:,:)
     real(wp) :: alpha, rz, rz_old
     integer :: k
@@ -181,26 +200,27 @@ contains
     allocate (r, source=rhs)
     allocate (z, mold=r)
     allocate (q, mold=r)
-    call precondition(matrix, r, z)
+    call precondition(matrix, rows, r, z)
     allocate (p, source=z)
     rz = sum(r*z)
-    first = max(first, rz)
     do k = 1, most_steps
-      if (.not. rz > small**2*first) exit
+      if (.not. rz > enough) exit
       call multiply(matrix, p, q)
       where (held) q = 0
+      call project(rows, q)
       alpha = rz/sum(p*q)
       x = x + alpha*p
       r = r - alpha*q
-      call precondition(matrix, r, z)
+      call precondition(matrix, rows, r, z)
       rz_old = rz
       rz = sum(r*z)
       p = z + rz/rz_old*p
     end do
   end subroutine solve
 
-  pure subroutine precondition(matrix, r, z)
+  subroutine precondition(matrix, rows, r, z)
     type(normal_matrix), intent(in) :: matrix
+    type(linear_rows_type), intent(in) :: rows(3)
     real(wp), intent(in) :: r(:,:)
     real(wp), intent(out) :: z(:,:)
 
@@ -209,6 +229,7 @@ contains
     do a = 1, size(matrix%diagonal)
       z(:,a) = r(:,a)/matrix%diagonal(a)
     end do
+    call project(rows, z)
   end subroutine precondition
 
   pure subroutine multiply(matrix, p, q)

@@ -50,6 +50,38 @@ expect again tip_uz "$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "t
 solve sphere "$verify/sphere_pressure.inp" n=2
 expect sphere elastic 0.0219911 3e-7
 
+# A square with extraordinary points in every face: pulled exactly, clamped and bent to the closed form, again from its file.
+solve pulled "$verify/patchwork_plate.inp" load=pull n=0
+expect pulled elastic 5e-7 1e-18
+solve bent "$verify/patchwork_plate.inp" n=2
+expect bent elastic 2.12460e-9 4e-12
+cat >bent_again.inp <<'EOF'
+FEAP * * the square from its file
+0 0 0 3 3
+
+T-SPline FILE="bent.out/plate.iga" MATErial=1
+
+MATErial 1
+  SHELl
+  ELAStic ISOTropic 1e6 0.3
+  THICkness 0.01
+  SMALl
+
+CLAMp plate.boundary
+SLOAd plate PRESsure 1e-3
+HISTory ELAStic
+
+END
+BATCh
+  DT,,1
+  TIME
+  TANG,,1
+END
+STOP
+EOF
+solve bent_again bent_again.inp
+expect bent_again elastic "$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "elastic") c = i } { v = $c } END { print v }' bent.out/history.csv)" 1e-20
+
 # The first steps of the two problems of the paper; both are symmetric about a plane x = const. The hemispheres against the
 # axisymmetric shell of tests/studies/flattened_cap.py: its force, and its apex -0.00165 beyond half of the rim's way. The
 # coarse mesh has 12 points in contact; on the finest both agree to 1e-4.

@@ -14,7 +14,7 @@ module plate_projection
   use geometry_map, only: physical_hessian
   implicit none (type, external)
   private
-  public :: plate_errors, plate_field, waves, bubble, parabola, solve_plate, solve_on_mesh
+  public :: plate_errors, plate_field, waves, bubble, parabola, plane, solve_plate, solve_on_mesh
 
   type :: plate_errors
     integer :: unknowns = 0
@@ -47,6 +47,12 @@ module plate_projection
   contains
     procedure :: at => parabola_at
   end type parabola
+
+  !> no curvature
+  type, extends(plate_field) :: plane
+  contains
+    procedure :: at => plane_at
+  end type plane
 
   !> product of the squared distances from the sides of a regular polygon in the unit circle, as `star` makes it
   type, extends(plate_field) :: bubble
@@ -89,6 +95,15 @@ contains
     w = [x(1)**2 + x(1)*x(2) - 3*x(2)**2, 2*x(1) + x(2), x(1) - 6*x(2), 2.0_wp, -6.0_wp, 1.0_wp]
     if (self%is_clamped) w = 0
   end function parabola_at
+
+  pure function plane_at(self, x) result(w)
+    class(plane), intent(in) :: self
+    real(wp), intent(in) :: x(2)
+    real(wp) :: w(6)
+
+    w = [1 + 2*x(1) - x(2), 2.0_wp, -1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
+    if (self%is_clamped) w = 0
+  end function plane_at
 
   pure function bubble_at(self, x) result(w)
     class(bubble), intent(in) :: self
@@ -221,7 +236,7 @@ contains
       do a = 1, size(ix)
         do i = 0, p
           do j = 0, 1
-            select case (side_of_edge(spline, c))
+            select case (side_of_edge(c))
             case (1);     place = [j, i]
             case (2);     place = [p - j, i]
             case (3);     place = [i, j]

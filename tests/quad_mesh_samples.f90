@@ -7,7 +7,7 @@ module quad_mesh_samples
   implicit none (type, external)
   private
   public :: star, grid, torus, box, half_box, cap, half_star, l_shape, finer, &
-    uneven
+    uneven, patchwork, framed
 
   real(wp), parameter :: pi = acos(-1.0_wp)
 
@@ -232,6 +232,159 @@ contains
     call create_quad_mesh(x, faces, mesh, message)
     if (len(message) > 0) error stop 'half_box: the sample has a fault'
   end function half_box
+
+  function patchwork(n, stream) result(mesh)
+    !! A square with its corners on the unit circle, in n by n squares that are halved along one of
+    !! their diagonals at random, every triangle in three faces: points of 3, 5
+    !! and more faces inside and on the boundary, two in most faces; straight lines from them cross
+    !! everywhere.
+    integer, intent(in) :: n
+    type(random_stream), intent(inout) :: stream
+    type(quad_mesh_type) :: mesh
+    integer :: edge((n+1)**2,(n+1)**2), f, faces(4,6*n*n), i, j, k, nv, t(3,2)
+    real(wp) :: x(3,6*(n+1)**2)
+    character(:), allocatable :: message
+
+    x = 0
+    do j = 0, n
+      do i = 0, n
+        x(1:2,vertex(i, j)) = (2*[i, j] - n)/(n*sqrt(2.0_wp))
+        if (min(i, j, n - i, n - j) == 0) cycle
+        do k = 1, 2
+          x(k,vertex(i, j)) = x(k,vertex(i, j)) + uniform(stream, -0.2_wp, 0.2_wp)/n
+        end do
+      end do
+    end do
+    nv = (n + 1)**2
+    edge = 0
+    f = 0
+    do j = 1, n
+      do i = 1, n
+        if (runs_up(i, j)) then
+          t(:,1) = [vertex(i-1, j-1), vertex(i, j-1), vertex(i, j)]
+          t(:,2) = [vertex(i-1, j-1), vertex(i, j), vertex(i-1, j)]
+        else
+          t(:,1) = [vertex(i-1, j-1), vertex(i, j-1), vertex(i-1, j)]
+          t(:,2) = [vertex(i, j-1), vertex(i, j), vertex(i-1, j)]
+        end if
+        do k = 1, 2
+          call add_triangle(t(:,k))
+        end do
+      end do
+    end do
+    call create_quad_mesh(x(:,1:nv), faces, mesh, message)
+    if (len(message) > 0) error stop 'patchwork: the sample has a fault'
+
+  contains
+
+    integer function vertex(i, j)
+      integer, intent(in) :: i, j
+
+      vertex = 1 + i + (n + 1)*j
+    end function vertex
+
+    logical function runs_up(i, j)
+      !! The diagonal, so that corners have one triangle.
+      integer, intent(in) :: i, j
+
+      runs_up = uniform(stream, -1.0_wp, 1.0_wp) > 0
+      if ((i == 1 .or. i == n) .and. (j == 1 .or. j == n)) runs_up = (i == 1) .neqv. (j == 1)
+      if (n == 1) runs_up = .true.
+    end function runs_up
+
+    subroutine add_triangle(v)
+      integer, intent(in) :: v(3)
+      integer :: k, middle(3)
+
+      do k = 1, 3
+        middle(k) = middle_of(v(k), v(mod(k, 3) + 1))
+      end do
+      nv = nv + 1
+      x(:,nv) = sum(x(:,v), 2)/3
+      do k = 1, 3
+        f = f + 1
+        faces(:,f) = [v(k), middle(k), nv, middle(mod(k + 1, 3) + 1)]
+      end do
+    end subroutine add_triangle
+
+    integer function middle_of(a, b)
+      integer, intent(in) :: a, b
+
+      if (edge(a,b) == 0) then
+        nv = nv + 1
+        edge(a,b) = nv
+        edge(b,a) = nv
+        x(:,nv) = (x(:,a) + x(:,b))/2
+      end if
+      middle_of = edge(a,b)
+    end function middle_of
+  end function patchwork
+
+  function framed(square, half) result(mesh)
+    !! A square, with sides along the axes and one face in each corner, inside a frame of one row of
+    !! faces: boundary vertices have one or two faces.
+    type(quad_mesh_type), intent(in) :: square
+    real(wp), intent(in) :: half                 !! of the length of a side of the frame
+    type(quad_mesh_type) :: mesh
+    real(wp) :: x(3,3*square%nv)
+    integer :: c, corner, e, f, faces(4,2*square%nf), nv, number(square%nv,4)
+    character(:), allocatable :: message
+
+    x(:,1:square%nv) = square%x
+    nv = square%nv
+    f = square%nf
+    faces(:,1:f) = reshape(square%vertex, [4, f])
+    number = 0
+    do c = 1, 4*square%nf
+      if (square%twin(c) > 0) cycle
+      associate (v => square%vertex(c), w => square%vertex(next_corner(c)))
+        call add_face([w, v, outside(v, side_of(c)), outside(w, side_of(c))])
+        ! the corner between this edge and the one that ends here
+        e = c - 1 + merge(4, 0, mod(c, 4) == 1)
+        if (square%faces(v) > 1) cycle
+        nv = nv + 1
+        x(1:2,nv) = half*sign(1.0_wp, square%x(1:2,v))
+        x(3,nv) = 0
+        corner = nv
+        call add_face([v, outside(v, side_of(e)), corner, outside(v, side_of(c))])
+      end associate
+    end do
+    call create_quad_mesh(x(:,1:nv), faces(:,1:f), mesh, message)
+    if (len(message) > 0) error stop 'framed: the sample has a fault'
+
+  contains
+
+    subroutine add_face(vertices)
+      integer, intent(in) :: vertices(4)
+
+      f = f + 1
+      faces(:,f) = vertices
+    end subroutine add_face
+
+    integer function side_of(corner)
+      !! 1, 2: x = -, +; 3, 4: y = -, +
+      integer, intent(in) :: corner
+      real(wp) :: middle(2)
+      integer :: k
+
+      middle = sum(square%x(1:2,square%vertex([corner, next_corner(corner)])), 2)/2
+      k = maxloc(abs(middle), 1)
+      side_of = 2*k - 1
+      if (middle(k) > 0) side_of = 2*k
+    end function side_of
+
+    integer function outside(v, side)
+      integer, intent(in) :: v, side
+
+      if (number(v,side) == 0) then
+        nv = nv + 1
+        number(v,side) = nv
+        x(:,nv) = square%x(:,v)
+        x((side + 1)/2,nv) = merge(half, -half, mod(side, 2) == 0)
+      end if
+      outside = number(v,side)
+    end function outside
+  end function framed
 
   function finer(mesh) result(split)
     !! Every face in four.

@@ -93,7 +93,7 @@ contains
       if (edge(2) < c .or. spline%mesh%crease(c)) cycle
       do k = 0, points
         do m = 1, 2
-          call surface_jet(mesh, face_of(edge(m)), edge_point(side_of_edge(spline, edge(m)), &
+          call surface_jet(mesh, face_of(edge(m)), edge_point(side_of_edge(edge(m)), &
             merge(k, points - k, m == 1)/real(points, wp)), x(:,m), dx, d2x)
           normal(:,m) = cross(dx(:,1), dx(:,2))
           normal(:,m) = normal(:,m)/norm2(normal(:,m))
@@ -107,17 +107,16 @@ contains
 
   real(wp) function look_at_second_derivatives(spline) result(jump)
     !! Largest difference of the second derivatives across the edges (by the knots) between faces that
-    !! touch no face on a seam or at a compact point.
+    !! touch no face on a seam.
     type(unstructured_spline_type), intent(in) :: spline
     type(extraction_mesh_type), target :: mesh
     real(wp) :: across(3,2), dx(3,2), d2x(3,3), h, x(3)
-    logical :: special(spline%mesh%nv)         ! of a face on a seam or at a compact point
+    logical :: special(spline%mesh%nv)         ! of a face on a seam
     integer :: c, edge(2), k, m, side
 
     call spline_mesh(spline, mesh)
     special = .false.
     do c = 1, 4*spline%mesh%nf
-      if (spline%slots%irregular(face_of(c)) > 0) special(spline%mesh%vertex(c)) = .true.
       if (spline%mesh%seam(c)) special(spline%mesh%vertex(4*face_of(c)-3:4*face_of(c))) = .true.
     end do
     jump = 0
@@ -127,7 +126,7 @@ contains
       if (.not. (is_plain(face_of(c)) .and. is_plain(face_of(edge(2))))) cycle
       do k = 0, 4
         do m = 1, 2
-          side = side_of_edge(spline, edge(m))
+          side = side_of_edge(edge(m))
           call surface_jet(mesh, face_of(edge(m)), edge_point(side, &
             merge(k, 4 - k, m == 1)/4.0_wp), x, dx, d2x)
           h = spline%mesh%interval(previous_corner(edge(m)))
