@@ -10,6 +10,7 @@ module interface_commands
   !! The lines are optional and end with a blank line or the next command.
   use kinds, only: wp
   use messages, only: message_log, deck_place, quoted, name_hint, in_place
+  use number_text, only: write_number
   use deck_record, only: record
   use deck_reader, only: deck_type => deck
   use model_data, only: model_type, interface_type, bond_region, surface_load_type, history_request, &
@@ -21,6 +22,7 @@ module interface_commands
   use material_commands, only: define_element
   use data_lines, only: next_line, as_property
   use bond_regions, only: read_region, resolve_regions
+  use surface_orientation, only: find_turned_pair
   implicit none (type, external)
   private
   public :: surface_of, read_contact, resolve_interfaces, resolve_loads, resolve_histories
@@ -202,6 +204,7 @@ contains
       end associate
       call check_surface(model, draft%interfaces(i)%at, 'slave', model%interfaces(i)%slave, log)
       call check_surface(model, draft%interfaces(i)%at, 'master', model%interfaces(i)%master, log)
+      call check_orientation(model, draft, draft%interfaces(i)%at, 'CONTact', 'master', model%interfaces(i)%master, log)
       call resolve_regions(model, i, log)
       if (model%interfaces(i)%offset < 0) call take_offset(model, draft%interfaces(i)%at, model%interfaces(i), log)
     end do
@@ -222,6 +225,33 @@ contains
         'Contact is between surfaces: write the name of the patch')
     end associate
   end subroutine check_surface
+
+  subroutine check_orientation(model, draft, at, command, role, set, log)
+    !! A master of shells has one normal, whose sign holds for all of it; so has a surface under pressure.
+    type(model_type), intent(in) :: model
+    type(draft_type), intent(in) :: draft
+    type(deck_place), intent(in) :: at
+    character(*), intent(in) :: command, role    !! of the surface: master, loaded
+    integer, intent(in) :: set                   !! index into sets; 0: an error of its own
+    type(message_log), intent(inout) :: log
+    integer, allocatable :: shells(:), part(:)
+    integer :: pair(2), i
+    real(wp) :: x(3)
+
+    if (set == 0 .or. model%ndm < 3) return
+    associate (items => model%sets(set)%items)
+      shells = pack(items, model%sets(set)%sides == 0 .and. model%mesh%dp(items) == 2)
+    end associate
+    allocate (part(size(shells)), source=0)
+    do i = 1, size(draft%origins)
+      where (shells >= draft%origins(i)%first .and. shells <= draft%origins(i)%last) part = i
+    end do
+    call find_turned_pair(model, shells, part, pair, x)
+    if (pair(1) > 0) call log%add_error(at, command, 'the normals of the ' // role // ' surface ' // &
+      quoted(model%sets(set)%name) // ' point to opposite sides where ' // draft%element_name(pair(1)) // ' and ' // &
+      draft%element_name(pair(2)) // ' meet, at (' // write_number(x(1)) // ', ' // write_number(x(2)) // ', ' // &
+      write_number(x(3)) // ')', 'Turn one direction of a patch round, or exchange its two directions')
+  end subroutine check_orientation
 
   subroutine take_offset(model, at, it, log)
     !! Half the thicknesses of both shells.
@@ -307,6 +337,8 @@ contains
           load%set = surface_of(model, draft, request%at, 'SLOAd', 'surface', request%set, log)
         end if
         if (load%set > 0) call check_load(model, load, request%at, request%set, log)
+        if (any(load%kind == ['pressure', 'follower'])) call check_orientation(model, draft, request%at, 'SLOAd', &
+          'loaded', load%set, log)
         if (load%prop > 0 &
           .and. .not. any(model%props(:)%number == load%prop)) call log%add_error(request%at, &
           'SLOAd', 'the time function of PROP is not defined', 'Define it by PROPortional')

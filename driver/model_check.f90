@@ -2,7 +2,7 @@ module model_check
   !! What can be wrong with a model as a whole: weights, missing coordinates, inverted elements,
   !! nodes without elements. Every finding names the data set that it comes from.
   use kinds, only: wp
-  use status_codes, only: ok, bad_extraction, node_out_of_range, status_text
+  use status_codes, only: ok, bad_extraction, inverted_element, node_out_of_range, status_text
   use messages, only: message_log, deck_place, whole_text
   use number_text, only: write_number
   use model_data, only: model_type
@@ -107,7 +107,7 @@ contains
 
   subroutine check_geometry(model, draft, log)
     !! det J is positive at Gauss points and not negative at corners (where it may vanish: collapsed
-    !! edges). One message for each data set.
+    !! edges); surfaces have an area, and their normal does not turn round within an element. One message for each data set.
     type(model_type), intent(in) :: model
     type(draft_type), intent(in) :: draft
     type(message_log), intent(inout) :: log
@@ -154,6 +154,10 @@ contains
         ' has no area at ' // point_text(worst_place)
       if (first_status /= ok .and. model%mesh%dp(first) < model%ndm) remedy = &
         'Its control points lie in a point or on a line: check them and their order'
+      if (first_status == inverted_element .and. model%mesh%dp(first) < model%ndm) then
+        fact = 'element ' // whole_text(first) // ' is folded: its normal turns round near ' // point_text(worst_place)
+        remedy = 'Check its control points and their order'
+      end if
       if (bad > 1) fact = fact // ' (and ' // whole_text(bad - 1) // &
         ' more elements of this data set)'
       call log%add_error(at, draft%element_name(first), fact, remedy)
@@ -171,6 +175,7 @@ contains
       dshpx(:, :), xi(:, :), wt(:)
     integer, allocatable :: ix(:)
     real(wp) :: d, x(model%ndm), tau(model%ndm, model%ndm - 1), nrm(model%ndm), largest
+    real(wp), allocatable :: normals(:, :)
     integer :: dp, g, ng, nen
     logical :: corner
     real(wp), parameter :: rounding = 1e-10_wp
@@ -183,6 +188,7 @@ contains
     we = model%w(ix)
     allocate (shp(nen), dshp(dp, nen), d2shp((dp*(dp + 1))/2, nen), dshpx(dp, nen))
     call points_to_check(model%mesh%degree(1:dp, e), xi, wt, ng)
+    allocate (normals(model%ndm, ng))
 
     status = ok
     detj = huge(detj)
@@ -204,6 +210,10 @@ contains
       else
         call tangent_frame_at(xe, shp, dshp, x, tau, nrm, d, status)
         if (corner) status = ok
+        if (status == ok .and. .not. corner) then
+          normals(:, g) = nrm
+          if (is_turned(g)) status = inverted_element
+        end if
       end if
       largest = max(largest, d)
       if (d < detj .or. status /= ok) then
@@ -212,6 +222,23 @@ contains
       end if
       if (status /= ok) return
     end do
+
+  contains
+
+    logical function is_turned(g)
+      !! The normal of a Gauss point against those of the points before it in each direction.
+      integer, intent(in) :: g
+      integer :: before, direction, stride
+
+      is_turned = .false.
+      stride = 1
+      do direction = 1, dp
+        before = g - stride
+        if (mod((g - 1)/stride, model%mesh%degree(direction, e) + 1) > 0) is_turned = is_turned &
+          .or. dot_product(normals(:, g), normals(:, before)) < 0
+        stride = stride*(model%mesh%degree(direction, e) + 1)
+      end do
+    end function is_turned
   end subroutine smallest_jacobian
 
   subroutine points_to_check(degree, xi, wt, ng)

@@ -4,7 +4,7 @@ module quad_mesh_commands
   !!
   !!     QUADmesh name [FILE="name.obj"] [MATErial=m] [BODY=b]
   !!       VERTices n                   then n lines x y [z]
-  !!       FACEs n                      then n lines v1 v2 v3 v4, counter-clockwise
+  !!       FACEs n                      then n lines v1 v2 v3 v4 ..., counter-clockwise
   !!       CREAse v1 v2 [v3 ...]        the edges v1-v2, v2-v3 ... are not smooth
   !!       INTErval v1 v2 d             knot interval of the edge v1-v2 and of all edges of its strip of faces (1)
   !!       TRANslate dx dy [dz]         moves the vertices
@@ -16,7 +16,9 @@ module quad_mesh_commands
   !!       SPHEre x y z r [SYMMetric]   control points move so that the surface follows this sphere
   !!       SWEEp vx vy vz DEGRee=r ELEMents=n [RATIo=q]   the surface becomes a solid along a vector
   !!
-  !! The mesh is in the file or in VERTices and FACEs, which come first; a blank line ends the data set. Vertices are the
+  !! The mesh is in the file or in VERTices and FACEs, which come first; a blank line ends the data set. Faces of more than
+  !! four vertices have T-junctions (see t_quad_corners, t_quad_intervals, t_quad_spline); with them REFIne divides the
+  !! faces of the control mesh, and there is no local refinement. Vertices are the
   !! control points where the mesh is regular; on the boundary and on creases the surface's curves have the vertices as
   !! control points and run through corners. REFIne leaves bicubic parts as they are; a mesh that has to be refined before
   !! it makes a surface (two extraordinary points in one face) is refined between its vertices first. BOX and VERTex refine
@@ -38,7 +40,9 @@ module quad_mesh_commands
   use data_lines, only: next_line
   use element_commands, only: begin_origin
   use quad_bodies, only: quad_body, add_quad_body
-  use quad_mesh_lines, only: quad_draft, read_quad_file, carry_out_quad_line
+  use quad_mesh_draft, only: quad_draft
+  use quad_mesh_lines, only: read_quad_file, carry_out_quad_line
+  use t_quad_surface, only: build_t_surface
   use extraction_mesh, only: extraction_mesh_type
   use quad_mesh, only: quad_mesh_type, next_corner
   use unstructured_spline, only: unstructured_spline_type, create_spline
@@ -68,10 +72,9 @@ contains
     type(message_log), intent(inout) :: log
     type(quad_draft) :: new
     type(record) :: rec
-    type(unstructured_spline_type) :: spline
-    type(local_spline_type) :: local
     type(extraction_mesh_type), target :: mesh
     character(:), allocatable :: file, message, name
+    integer, allocatable :: elements(:), first(:), sides(:)
     integer :: body, error_count, material, old
     logical :: more
 
@@ -100,8 +103,11 @@ contains
     if (log%error_count() == error_count .and. .not. new%is_built) call command%add_error(log, &
       'the mesh has no faces', 'Give FILE="name.obj", or VERTices and FACEs')
     if (log%error_count() == error_count) then
-      call build(new, spline, message)
-      if (len(message) == 0) call refine_locally(spline, new%zones, new%zones%most_levels(), local, message)
+      if (new%has_t_junctions) then
+        call build_t_surface(new, mesh, elements, sides, first, message)
+      else
+        call build_surface(new, mesh, elements, sides, first, message)
+      end if
       if (len(message) > 0) call command%add_error(log, message, '')
     end if
     if (log%error_count() > error_count) then
@@ -110,11 +116,46 @@ contains
       draft%has_lost_sets = .true.
       return
     end if
-    call local_mesh(local, mesh)
-    if (new%on_sphere) call fit(new%sphere, new%is_symmetric, local, mesh)
+    if (new%on_sphere) call fit(new%sphere, new%is_symmetric, elements, sides, first, mesh)
     call begin_origin(draft, command, 'QUADmesh', name)
-    call add_to_mesh(local, mesh, new%sweep, name, material, body, command, model, draft, log)
+    call add_to_mesh(mesh, elements, sides, first, new%sweep, name, material, body, command, model, draft, log)
   end subroutine read_quad_mesh
+
+  subroutine build_surface(new, mesh, elements, sides, first, message)
+    type(quad_draft), intent(inout) :: new
+    type(extraction_mesh_type), intent(inout) :: mesh    !! without sets
+    integer, allocatable, intent(out) :: elements(:)     !! along the boundary, piece by piece
+    integer, allocatable, intent(out) :: sides(:)        !! theirs on the boundary
+    integer, allocatable, intent(out) :: first(:)        !! of each piece, and one behind the last
+    character(:), allocatable, intent(out) :: message    !! empty: nothing wrong
+    type(unstructured_spline_type) :: spline
+    type(local_spline_type) :: local
+
+    call build(new, spline, message)
+    if (len(message) == 0) call refine_locally(spline, new%zones, new%zones%most_levels(), local, message)
+    if (len(message) > 0) return
+    call local_mesh(local, mesh)
+    call elements_on_boundary(local, elements, sides, first)
+  end subroutine build_surface
+
+  subroutine elements_on_boundary(local, elements, sides, first)
+    type(local_spline_type), intent(in) :: local
+    integer, allocatable, intent(out) :: elements(:), sides(:), first(:)
+    integer, allocatable :: edge_elements(:), edge_sides(:), edges(:), starts(:)
+    integer :: k, m
+
+    call boundary_pieces(local%levels(1)%spline, edges, starts)
+    allocate (elements(0), sides(0), first(0))
+    do k = 1, size(starts) - 1
+      first = [first, size(elements) + 1]
+      do m = starts(k), starts(k + 1) - 1
+        call local_sides(local, edges(m), edge_elements, edge_sides)
+        elements = [elements, edge_elements]
+        sides = [sides, edge_sides]
+      end do
+    end do
+    first = [first, size(elements) + 1]
+  end subroutine elements_on_boundary
 
   subroutine build(new, spline, message)
     type(quad_draft), intent(inout) :: new
@@ -152,36 +193,33 @@ contains
     type(local_spline_type) :: local
     type(extraction_mesh_type), target :: mesh
     type(zones_type) :: nowhere
+    integer, allocatable :: elements(:), first(:), sides(:)
 
     call refine_locally(spline, nowhere, 0, local, message)
     if (len(message) > 0) return
     call local_mesh(local, mesh)
-    call fit(sphere, is_symmetric, local, mesh)
+    call elements_on_boundary(local, elements, sides, first)
+    call fit(sphere, is_symmetric, elements, sides, first, mesh)
     spline%cp = mesh%x
   end subroutine fit_spline
 
-  subroutine fit(sphere, is_symmetric, local, mesh)
+  subroutine fit(sphere, is_symmetric, elements, sides, first, mesh)
     type(sphere_type), intent(in) :: sphere
     logical, intent(in) :: is_symmetric               !! pieces in planes through the centre meet these at right angles
-    type(local_spline_type), intent(in) :: local
+    integer, intent(in) :: elements(:), sides(:), first(:)   !! pieces of the boundary
     type(extraction_mesh_type), intent(inout), target :: mesh
     logical, allocatable :: held(:, :), on_piece(:)
-    integer, allocatable :: edges(:), elements(:), first(:), sides(:)
     type(linear_rows_type) :: rows(3)
     real(wp) :: size_of, x(mesh%nn)
-    integer :: i, k, m, n
+    integer :: i, k, m
 
     allocate (held(3, mesh%nn), source=.false.)
     allocate (on_piece(mesh%nn))
     size_of = maxval(abs(mesh%x))
-    call boundary_pieces(local%levels(1)%spline, edges, first)
     do k = 1, size(first) - 1
       on_piece = .false.
       do m = first(k), first(k+1) - 1
-        call local_sides(local, edges(m), elements, sides)
-        do n = 1, size(elements)
-          call mark_side(mesh, elements(n), sides(n), on_piece)
-        end do
+        call mark_side(mesh, elements(m), sides(m), on_piece)
       end do
       do i = 1, 3
         if (maxval(mesh%x(i, :), mask=on_piece) - minval(mesh%x(i, :), mask=on_piece) < 1e-9_wp*size_of) &
@@ -192,15 +230,12 @@ contains
       call rows(i)%start(.not. held(i, :))
     end do
     if (is_symmetric) then
-      do m = 1, size(edges)
-        call local_sides(local, edges(m), elements, sides)
-        do n = 1, size(elements)
-          on_piece = .false.
-          call mark_side(mesh, elements(n), sides(n), on_piece)
-          do i = 1, 3
-            if (maxval(abs(mesh%x(i, :) - sphere%centre(i)), mask=on_piece) < 1e-9_wp*size_of) &
-              call add_right_angle(mesh, elements(n), sides(n), i, rows)
-          end do
+      do m = 1, size(elements)
+        on_piece = .false.
+        call mark_side(mesh, elements(m), sides(m), on_piece)
+        do i = 1, 3
+          if (maxval(abs(mesh%x(i, :) - sphere%centre(i)), mask=on_piece) < 1e-9_wp*size_of) &
+            call add_right_angle(mesh, elements(m), sides(m), i, rows)
         end do
       end do
       do i = 1, 3
@@ -272,9 +307,9 @@ contains
     end function is_corner
   end subroutine boundary_pieces
 
-  subroutine add_to_mesh(local, mesh, sweep, name, material, body, command, model, draft, log)
-    type(local_spline_type), intent(in) :: local
+  subroutine add_to_mesh(mesh, elements, sides, first, sweep, name, material, body, command, model, draft, log)
     type(extraction_mesh_type), intent(in), target :: mesh
+    integer, intent(in) :: elements(:), sides(:), first(:)   !! pieces of the boundary
     type(sweep_type), allocatable, intent(in) :: sweep
     character(*), intent(in) :: name
     integer, intent(in) :: material, body
@@ -283,17 +318,15 @@ contains
     type(draft_type), intent(inout) :: draft
     type(message_log), intent(inout) :: log
     type(quad_body) :: added
-    integer, allocatable :: edges(:), first(:)
     integer :: e, k, status
 
     call add_quad_body(mesh, sweep, model, draft, added, status)
     if (status /= ok) call command%add_error(log, status_text(status), 'Sweep fewer elements')
     call draft%note_elements(added%first, added%last, material, body, command%at)
     call add_set(model, name, in_place(command%at), set_elements, [(e, e = added%first, added%last)], [integer ::])
-    call boundary_pieces(local%levels(1)%spline, edges, first)
-    call add_edges('.boundary', edges)
+    call add_edges('.boundary', 1, size(elements))
     do k = 1, size(first) - 1
-      call add_edges('.edge' // whole_text(k), edges(first(k):first(k+1)-1))
+      call add_edges('.edge' // whole_text(k), first(k), first(k+1) - 1)
     end do
     if (.not. allocated(sweep)) return
     call add_set(model, name // '.back', in_place(command%at), set_surface, added%layer(1), spread(5, 1, added%flat))
@@ -302,20 +335,13 @@ contains
 
   contains
 
-    subroutine add_edges(ending, corners)
+    subroutine add_edges(ending, from, to)
       character(*), intent(in) :: ending
-      integer, intent(in) :: corners(:)
-      integer, allocatable :: all_elements(:), all_sides(:), elements(:), sides(:)
+      integer, intent(in) :: from, to                 !! in the list of the boundary
       integer :: i
 
-      allocate (all_elements(0), all_sides(0))
-      do i = 1, size(corners)
-        call local_sides(local, corners(i), elements, sides)
-        all_elements = [all_elements, elements]
-        all_sides = [all_sides, sides]
-      end do
-      call add_set(model, name // ending, in_place(command%at), set_surface, added%through_layers(all_elements), &
-        [(all_sides, i = 1, added%layers)])
+      call add_set(model, name // ending, in_place(command%at), set_surface, added%through_layers(elements(from:to)), &
+        [(sides(from:to), i = 1, added%layers)])
     end subroutine add_edges
   end subroutine add_to_mesh
 end module quad_mesh_commands

@@ -11,29 +11,15 @@ module quad_mesh_lines
   use extraction_file, only: load_text
   use extraction_mesh, only: problem_list
   use obj_reader, only: read_obj
-  use quad_mesh, only: quad_mesh_type, create_quad_mesh, set_crease, set_interval
-  use refinement_zones, only: zones_type, zone_type
-  use sphere_target, only: sphere_type
-  use t_sweep, only: sweep_type
+  use quad_mesh_draft, only: quad_draft
+  use refinement_zones, only: zone_type
+  use growing_arrays, only: make_room
   use t_patch_lines, only: read_sweep
   implicit none (type, external)
   private
-  public :: quad_draft, read_quad_file, carry_out_quad_line
+  public :: read_quad_file, carry_out_quad_line
 
   integer, parameter :: most_refinements = 10, most_levels = 6
-
-  !> what the lines of the data set say
-  type :: quad_draft
-    type(quad_mesh_type) :: mesh
-    logical :: is_built = .false.
-    real(wp), allocatable :: x(:, :)             !! vertices that wait for their faces (3,nv)
-    logical, allocatable :: given(:)             !! edges with intervals
-    integer :: refinements = 0
-    type(zones_type) :: zones                    !! of local refinement
-    logical :: on_sphere = .false., is_symmetric = .false.
-    type(sphere_type) :: sphere
-    type(sweep_type), allocatable :: sweep       !! into a solid
-  end type quad_draft
 
 contains
 
@@ -46,7 +32,7 @@ contains
     type(problem_list) :: problems
     character(:), allocatable :: message, path, text
     real(wp), allocatable :: x(:, :)
-    integer, allocatable :: faces(:, :), line(:)
+    integer, allocatable :: first(:), line(:), vertex(:)
     logical :: good
 
     path = beside(command%at%file, file)
@@ -61,9 +47,9 @@ contains
       call command%add_error(log, 'the file ' // quoted(path) // ' cannot be read', '')
       return
     end if
-    call read_obj(text, x, faces, line, problems)
+    call read_obj(text, x, first, vertex, line, problems)
     if (problems%count == 0) then
-      call create_quad_mesh(x, faces, new%mesh, message)
+      call new%set_faces(x, first, vertex, message)
       if (len(message) > 0) call problems%add(0, message, '')
       if (ndm == 2 .and. size(x) > 0) then
         if (any(abs(x(3, :)) > 0)) call problems%add(0, 'a vertex of a deck in the plane has z /= 0', &
@@ -71,9 +57,7 @@ contains
       end if
     end if
     call report_problems(problems, path, 'QUADmesh', command%at%order, log)
-    if (problems%count > 0) return
-    allocate (new%given(4*new%mesh%nf), source=.false.)
-    new%is_built = .true.
+    if (problems%count > 0) new%is_built = .false.
   end subroutine read_quad_file
 
   subroutine carry_out_quad_line(deck, rec, ndm, new, log)
@@ -111,7 +95,7 @@ contains
       allocate (v(rec%count - 1))
       call rec%integers(2, v, log, 'vertices')
       do i = 2, size(v)
-        call set_crease(new%mesh, v(i-1), v(i), message)
+        call new%set_crease_edge(v(i-1), v(i), message)
         if (len(message) > 0) exit
       end do
     case ('inte')
@@ -120,7 +104,7 @@ contains
       allocate (v(2))
       call rec%integers(2, v, log, 'vertices')
       call rec%number(4, length, log, 'length')
-      call set_interval(new%mesh, v(1), v(2), length, new%given, message)
+      call new%set_edge_interval(v(1), v(2), length, message)
     case ('refi')
       call read_refinement(rec, ndm, new, message, log)
     case ('sphe')
@@ -140,7 +124,11 @@ contains
     case ('swee')
       call read_sweep(rec, ndm, new%sweep, log)
     case ('tran', 'rota', 'scal')
-      call move_vertices(rec, ndm, new%mesh%x, log)
+      if (new%has_t_junctions) then
+        call move_vertices(rec, ndm, new%t_mesh%x, log)
+      else
+        call move_vertices(rec, ndm, new%mesh%x, log)
+      end if
     case default
       call rec%add_error(log, 'unknown line ' // quoted(rec%word(1)), known_names([character(9) :: 'VERTices', 'FACEs', &
         'CREAse', 'INTErval', 'TRANslate', 'ROTAte', 'SCALe', 'REFIne', 'SPHEre', 'SWEEp'], 'lines'))
@@ -186,13 +174,11 @@ contains
       call rec%number_option('distance', zone%radius, log)
       if (.not. zone%radius > 0) message = 'the DISTance from the vertex is missing or not positive'
       if (log%error_count() > error_count) return
-      if (v < 1 .or. v > new%mesh%nv) then
-        message = 'there is no vertex ' // whole_text(v)
-        return
-      end if
-      zone%centre = new%mesh%x(:, v)
+      call new%find_vertex(v, zone%centre, message)
+      if (len(message) > 0) return
     end if
-    if (log%error_count() == error_count) call new%zones%add(zone)
+    if (new%has_t_junctions) message = 'a mesh with T-junctions is not refined locally: let its faces be smaller there'
+    if (log%error_count() == error_count .and. len(message) == 0) call new%zones%add(zone)
   end subroutine read_refinement
 
   subroutine read_vertices(deck, rec, ndm, new, log)
@@ -222,7 +208,7 @@ contains
     type(message_log), intent(inout) :: log
     type(record) :: command
     character(:), allocatable :: message
-    integer, allocatable :: faces(:, :)
+    integer, allocatable :: first(:), vertex(:)
     integer :: a, error_count, n
 
     error_count = log%error_count()
@@ -233,21 +219,19 @@ contains
     end if
     call read_count(rec, n, log)
     if (n == 0) return
-    allocate (faces(4, n))
+    allocate (first(n + 1), vertex(0))
+    first(1) = 1
     do a = 1, n
       if (.not. has_line(deck, rec, a, n, log)) return
-      if (rec%count /= 4) call rec%add_error(log, 'face ' // whole_text(a) // ' has ' // whole_text(rec%count) // &
-        ' vertices', 'All faces need four')
-      if (rec%count == 4) call rec%integers(1, faces(:, a), log, 'vertices of a face')
+      if (rec%count < 4) call rec%add_error(log, 'face ' // whole_text(a) // ' has ' // whole_text(rec%count) // &
+        ' vertices', 'All faces need four corners')
+      first(a + 1) = first(a) + rec%count
+      call make_room(vertex, first(a + 1))
+      call rec%integers(1, vertex(first(a):first(a + 1) - 1), log, 'vertices of a face')
       if (log%error_count() > error_count) return
     end do
-    call create_quad_mesh(new%x, faces, new%mesh, message)
-    if (len(message) > 0) then
-      call command%add_error(log, message, '')
-      return
-    end if
-    allocate (new%given(4*new%mesh%nf), source=.false.)
-    new%is_built = .true.
+    call new%set_faces(new%x, first, vertex(1:first(n + 1) - 1), message)
+    if (len(message) > 0) call command%add_error(log, message, '')
   end subroutine read_faces
 
   subroutine read_count(rec, n, log)

@@ -89,8 +89,10 @@ contains
     ia => model%mesh%connectivity(e)
     ib => model%mesh%connectivity(other)
     ! which side it is, and how it runs
-    call edge_point_at(model, e, s, eta(2), here, status)
+    call edge_point_at(model, e, s, eta(3), there, status)
+    if (status == ok) call edge_point_at(model, e, s, eta(2), here, status)
     if (status /= ok) return
+    if (norm2(here%x - there%x) <= same_place*extent) return      ! a pole is no seam
     seam%element = [e, other]
     seam%side = [s, 0]
     sides: do i = 0, 3

@@ -1,7 +1,7 @@
 module shell_element
   !! The shell of MATErial as hosts call it: law data from property lines, a Gauss rule, the kernel.
   !!
-  !!     ELAStic STVK E nu | ISOTropic E nu     THICkness t     FINIte | SMALl
+  !!     ELAStic STVK E nu | ISOTropic E nu     THICkness t [POINts n]     FINIte | SMALl
   !!     QUADrature n [m]         Gauss points per direction, degree + 1 if absent
   !!     LAYEr z                  one more layer with stresses as results, -1 (bottom) to 1 (top)
   !!
@@ -11,8 +11,10 @@ module shell_element
   use user_element, only: element_type, element_geometry, element_state, element_energy, property_record, &
     task_prepare, task_tangent
   use gauss_rules, only: tensor_rule
-  use shell_law, only: shell_law_type, define_shell_law
-  use shell_kernel, only: shell_state, shell_points, shell_tangent, shell_force, shell_state_at, n_derivatives, n_frame
+  use shell_law, only: shell_law_type, define_shell_law, most_points
+  use shell_section, only: section_type, section_of
+  use shell_kernel, only: shell_state, shell_points, shell_tangent, shell_force, shell_state_at, curvature_at_start, &
+    n_derivatives, n_frame
   use shell_stress, only: membrane_force, bending_moment, layer_cauchy, von_mises
   implicit none (type, external)
   private
@@ -43,7 +45,7 @@ contains
     type(property_record), intent(in) :: properties(:)
     character(:), allocatable, intent(out) :: fault
     integer, intent(out) :: bad_record
-    integer :: i, status, elastic, thick
+    integer :: i, status, elastic, thick, points
     logical :: finite, small, is_linear
 
     self%ndm = 3
@@ -57,6 +59,7 @@ contains
     small = .false.
     elastic = 0
     thick = 0
+    points = 0
     bad_record = 0
     if (ndm /= 3) then
       fault = 'a shell lives in three dimensions: ndm is 3'
@@ -86,13 +89,21 @@ contains
           end select
         case ('thic')
           thick = i
-          if (size(values) /= 1 .or. size(words) > 1) then
-            fault = 'write THICkness and one number'
+          if (size(values) /= size(words) .or. size(words) > 2) then
+            fault = 'write THICkness and one number, then, if the law is to be integrated by points, POINts and their number'
             return
           end if
           if (.not. values(1) > 0) then
             fault = 'the thickness of a shell must be positive'
             return
+          end if
+          points = 0
+          if (size(words) == 2) then
+            if (words(2) /= 'poin' .or. values(2) < 2 .or. values(2) > most_points .or. abs(values(2) - nint(values(2))) > 0) then
+              fault = 'POINts takes a whole number of Gauss points over the thickness, 2 to 20'
+              return
+            end if
+            points = nint(values(2))
           end if
         case ('fini'); finite = .true.
         case ('smal'); small = .true.
@@ -128,6 +139,7 @@ contains
     else
       call define_shell_law(properties(elastic)%values(1), properties(elastic)%values(2), properties(thick)%values(1), &
         is_linear, self%law, status)
+      call self%law%integrate_by_points(points)
       if (status /= ok) fault = 'E must be positive and nu between -1 and 0.5'
     end if
   end subroutine define
@@ -169,24 +181,33 @@ contains
     ng = product(n)
     size_of_table = ng*(n_derivatives*geo%nen + n_frame + 1)
     if (task == task_prepare) then
-      call prepare(geo, n, ng, size_of_table, geo%table, status)
+      call prepare(geo, self%law, n, ng, size_of_table, geo%table, status)
     else
       call from_table(self%law, task, geo%nen, ng, size_of_table, geo%table, state%ue, fe, ke, energy%stored, status)
     end if
   end subroutine evaluate
 
-  pure subroutine prepare(geo, n, ng, size_of_table, table, status)
+  pure subroutine prepare(geo, law, n, ng, size_of_table, table, status)
     !! What does not change while the mesh stands.
     type(element_geometry), intent(in) :: geo
+    type(shell_law_type), intent(in) :: law
     integer, intent(in) :: n(2), ng, size_of_table
     real(wp), intent(inout) :: table(size_of_table)
     integer, intent(out) :: status
     real(wp) :: xi(2, ng), wt(ng), shp(geo%nen, ng)
     real(wp) :: dshp(n_derivatives, geo%nen, ng), frame(n_frame, ng), area(ng)
+    type(section_type) :: section
+    integer :: g
 
     call tensor_rule(n, xi, wt)
     call shell_points(geo%degree(1:2), geo%xe, geo%we, geo%ce, xi, wt, shp, dshp, frame, area, status)
     if (status /= ok) return
+    if (law%points > 0) then
+      do g = 1, ng
+        call section_of(law, curvature_at_start(frame(:, g)), section, status)
+        if (status /= ok) return
+      end do
+    end if
     table(1:size(dshp)) = reshape(dshp, [size(dshp)])
     table(size(dshp) + 1:size(dshp) + size(frame)) = reshape(frame, [size(frame)])
     table(size_of_table - ng + 1:) = area

@@ -15,14 +15,16 @@ module shell_kernel
   !! The derivatives R_,i and R_,ij are taken along two orthonormal directions E_i of the tangent plane of the start at
   !! each point, so that A_ij = 1, dA is the area itself and C is the isotropic plane-stress matrix. shell_points computes
   !! them once, the host keeps them. A linear law takes all geometry from the start and drops the terms of n and m.
-  !! Pairs ij are packed 11, 22, 12; only the blocks a >= b of the tangent are filled.
+  !! Pairs ij are packed 11, 22, 12; only the blocks a >= b of the tangent are filled. A law with points over the thickness
+  !! adds what its section has beyond tC and t^3/12 C (shell_section).
   use kinds, only: wp
   use status_codes, only: ok, singular_map
   use rational_basis, only: shape_functions
   use shell_law, only: shell_law_type
+  use shell_section, only: section_type, section_of, add_section_force
   implicit none (type, external)
   private
-  public :: shell_state, shell_points, shell_tangent, shell_force, shell_state_at
+  public :: shell_state, shell_points, shell_tangent, shell_force, shell_state_at, curvature_at_start
   public :: n_derivatives, n_frame
 
   integer, parameter :: n_derivatives = 5   !! of a function at a point: R_,1 R_,2 R_,11 R_,22 R_,12
@@ -103,8 +105,9 @@ contains
     type(shell_law_type), intent(in) :: law
     real(wp), contiguous, intent(out) :: fe(:,:)      !! internal force (3,nen) [force]
     real(wp), intent(out) :: energy                   !! stored energy [force length]
-    integer, intent(out) :: status                    !! ok, singular_map
+    integer, intent(out) :: status                    !! ok, singular_map, too_thick
     type(shell_state) :: now
+    type(section_type) :: section
     real(wp) :: n(3), m(3)
     integer :: g
 
@@ -114,8 +117,15 @@ contains
     do g = 1, size(area)
       call shell_state_at(size(ue, 2), dshp(:,:,g), frame(:,g), ue, law%is_linear, now, status)
       if (status /= ok) return
-      n = area(g)*law%membrane(now%eps)
-      m = area(g)*law%bending(now%kap)
+      n = law%membrane(now%eps)
+      m = law%bending(now%kap)
+      if (law%points > 0) then
+        call section_of(law, curvature_at_start(frame(:,g)), section, status)
+        if (status /= ok) return
+        call add_section_force(section, now%eps, now%kap, n, m)
+      end if
+      n = area(g)*n
+      m = area(g)*m
       energy = energy + (dot_product(n, now%eps) + dot_product(m, now%kap))/2
       call add_force(size(ue, 2), dshp(:,:,g), now, n, m, fe)
     end do
@@ -130,7 +140,7 @@ contains
     real(wp), contiguous, intent(out) :: fe(:,:)      !! internal force (3,nen) [force]
     real(wp), contiguous, intent(inout) :: ke(:,:,:,:)  !! df/du (3,nen,3,nen), blocks a >= b
     real(wp), intent(out) :: energy                   !! stored energy [force length]
-    integer, intent(out) :: status                    !! ok, singular_map
+    integer, intent(out) :: status                    !! ok, singular_map, too_thick
 
     call tangent_of(size(ue, 2), (size(ue, 2) + width - 1)/width, size(area), dshp, frame, area, ue, law, fe, ke, &
       energy, status)
@@ -150,6 +160,7 @@ contains
     real(wp), intent(out) :: energy
     integer, intent(out) :: status
     type(shell_state) :: now(ng)
+    type(section_type) :: section(ng*min(law%points, 1))
     real(wp) :: n(3,ng), m(3,ng), d(width,n_derivatives,ng,blocks), columns(width,3,n_derivatives,3,ng)
     real(wp) :: sums(width,3,width,3)
     integer :: a, block, first, g, i, k, last, q, r, row_block, row_first
@@ -160,8 +171,15 @@ contains
     do g = 1, ng
       call shell_state_at(nen, dshp(1,1,g), frame(1,g), ue, law%is_linear, now(g), status)
       if (status /= ok) return
-      n(:,g) = area(g)*law%membrane(now(g)%eps)
-      m(:,g) = area(g)*law%bending(now(g)%kap)
+      n(:,g) = law%membrane(now(g)%eps)
+      m(:,g) = law%bending(now(g)%kap)
+      if (law%points > 0) then
+        call section_of(law, curvature_at_start(frame(:,g)), section(g), status)
+        if (status /= ok) return
+        call add_section_force(section(g), now(g)%eps, now(g)%kap, n(:,g), m(:,g))
+      end if
+      n(:,g) = area(g)*n(:,g)
+      m(:,g) = area(g)*m(:,g)
       energy = energy + (dot_product(n(:,g), now(g)%eps) + dot_product(m(:,g), now(g)%kap))/2
       call add_force(nen, dshp(1,1,g), now(g), n(1,g), m(1,g), fe)
     end do
@@ -189,6 +207,7 @@ contains
       last = min(width, nen - first)
       do g = 1, ng
         call columns_of(d(1,1,g,block), now(g), n(1,g), m(1,g), area(g), law, columns(1,1,1,1,g))
+        if (law%points > 0) call add_section_columns(d(1,1,g,block), now(g), section(g), area(g), columns(1,1,1,1,g))
       end do
       do row_block = block, blocks
         row_first = width*(row_block - 1)
@@ -321,6 +340,75 @@ contains
       end do
     end do
   end subroutine columns_of
+
+  pure subroutine add_section_columns(d, now, section, area, z)
+    !! What the section's stiffness beyond the closed form adds to the columns: d eps_a . dn_b + d kap_a . dm_b.
+    real(wp), intent(in) :: d(width,n_derivatives)      !! derivatives of the functions b
+    type(shell_state), intent(in) :: now
+    type(section_type), intent(in) :: section
+    real(wp), intent(in) :: area                        !! of the point [length^2]
+    real(wp), intent(inout) :: z(width,3,n_derivatives,3) !! z(b,i,q,k)
+    real(wp), parameter :: twice(3) = [1, 1, 2]         !! a pair 12 stands for 21 too
+    real(wp) :: h(width,3), gh(width,3), dh(width,3), deps(width,3), dn(width,3), dm(width,3), t(width,3), a3
+    integer :: i, k, q, r
+
+    do q = 1, 3
+      !GCC$ unroll 1
+      do r = 1, width
+        h(r,q) = area*twice(q)*(d(r,2 + q) - now%gamma(1,q)*d(r,1) - now%gamma(2,q)*d(r,2))
+      end do
+    end do
+    do q = 1, 3
+      !GCC$ unroll 1
+      do r = 1, width
+        gh(r,q) = section%coupling(q,1)*h(r,1) + section%coupling(q,2)*h(r,2) + section%coupling(q,3)*h(r,3)
+        dh(r,q) = section%bending(q,1)*h(r,1) + section%bending(q,2)*h(r,2) + section%bending(q,3)*h(r,3)
+      end do
+    end do
+    do k = 1, 3
+      a3 = now%a3(k)
+      !GCC$ unroll 1
+      do r = 1, width
+        deps(r,1) = area*d(r,1)*now%a(k,1)
+        deps(r,2) = area*d(r,2)*now%a(k,2)
+        deps(r,3) = area*(d(r,1)*now%a(k,2) + d(r,2)*now%a(k,1))
+      end do
+      do q = 1, 3
+        !GCC$ unroll 1
+        do r = 1, width
+          dn(r,q) = section%membrane(q,1)*deps(r,1) + section%membrane(q,2)*deps(r,2) + section%membrane(q,3)*deps(r,3) &
+            - gh(r,q)*a3
+          dm(r,q) = twice(q)*(section%coupling(1,q)*deps(r,1) + section%coupling(2,q)*deps(r,2) &
+            + section%coupling(3,q)*deps(r,3) - dh(r,q)*a3)
+        end do
+      end do
+      do i = 1, 3
+        do q = 1, 3
+          !GCC$ unroll 1
+          do r = 1, width
+            t(r,q) = -now%a3(i)*dm(r,q)
+            z(r,i,2 + q,k) = z(r,i,2 + q,k) + t(r,q)
+          end do
+        end do
+        !GCC$ unroll 1
+        do r = 1, width
+          z(r,i,1,k) = z(r,i,1,k) + now%a(i,1)*dn(r,1) + now%a(i,2)*dn(r,3) &
+            - now%gamma(1,1)*t(r,1) - now%gamma(1,2)*t(r,2) - now%gamma(1,3)*t(r,3)
+          z(r,i,2,k) = z(r,i,2,k) + now%a(i,2)*dn(r,2) + now%a(i,1)*dn(r,3) &
+            - now%gamma(2,1)*t(r,1) - now%gamma(2,2)*t(r,2) - now%gamma(2,3)*t(r,3)
+        end do
+      end do
+    end do
+  end subroutine add_section_columns
+
+  pure function curvature_at_start(frame) result(b)
+    real(wp), intent(in) :: frame(n_frame)        !! of the start
+    real(wp) :: b(3)                              !! B 11, 22, 12 [1/length]
+    real(wp) :: normal(3)
+
+    normal = cross(frame(1:3), frame(4:6))
+    b = matmul(normal, reshape(frame(7:15), [3, 3]))
+  end function curvature_at_start
 
   pure subroutine add_force(nen, dshp, now, n, m, fe)
     integer, value :: nen

@@ -5,19 +5,25 @@ module shell_law
   !!
   !! in orthonormal directions, for strains 11, 22, 2*12 and forces 11, 22, 12. The energy of a layer at the height z is
   !! that of the strain eps + z kap; the metric's own change with z, of the order of t over the radius of curvature, is
-  !! neglected, as in shells of this kind.
+  !! neglected, as in shells of this kind. With `points`, shell_section adds it by quadrature.
   use kinds, only: wp
   use status_codes, only: ok, bad_law_data
+  use gauss_rules, only: gauss_legendre
   implicit none (type, external)
   private
-  public :: shell_law_type, define_shell_law
+  public :: shell_law_type, define_shell_law, most_points
+
+  integer, parameter :: most_points = 20   !! over the thickness
 
   type :: shell_law_type
     real(wp) :: c11 = 0, c12 = 0, c33 = 0   !! C [stress]
     real(wp) :: nu = 0                      !! Poisson's ratio
     real(wp) :: thickness = 0               !! [length]
     logical :: is_linear = .false.          !! small strains and rotations
+    integer :: points = 0                   !! Gauss points over the thickness; 0: closed form
+    real(wp) :: height(most_points) = 0, share(most_points) = 0   !! of the points, over the thickness (from -1/2 to 1/2)
   contains
+    procedure :: integrate_by_points
     procedure :: membrane
     procedure :: bending
     procedure :: layer_stress
@@ -43,6 +49,16 @@ contains
     law%thickness = thickness
     law%is_linear = is_linear
   end subroutine define_shell_law
+
+  pure subroutine integrate_by_points(self, n)
+    class(shell_law_type), intent(inout) :: self
+    integer, intent(in) :: n                !! 2 to most_points; 0: closed form
+
+    self%points = n
+    if (n == 0) return
+    call gauss_legendre(n, self%height(1:n), self%share(1:n))
+    self%height(1:n) = self%height(1:n) - 0.5_wp
+  end subroutine integrate_by_points
 
   pure function membrane(self, eps) result(n)
     class(shell_law_type), intent(in) :: self

@@ -6,10 +6,12 @@ module shell_stress
   !!   Cauchy stress   sigma(z) = S_ij(z) g_i (x) g_j / J,   S = C (eps + z kap),   g_i = a_i + z kap_ij a^j,
   !!                   J = |g_1 x g_2| lambda_3,   lambda_3^2 = 1 - 2 nu/(1 - nu) (E_11 + E_22)
   !!
+  !! With points over the thickness forces, moments and strains are those of shell_section, with the metric of the layers.
   !! z runs along the normal a_1 x a_2 from -t/2 (bottom) to t/2 (top). A linear law has a_i = E_i, j = J = 1.
   use kinds, only: wp
   use status_codes, only: ok, law_failed
   use shell_law, only: shell_law_type
+  use shell_section, only: section_type, section_of, add_section_force, layer_strain
   use shell_kernel, only: shell_state
   implicit none (type, external)
   private
@@ -21,17 +23,45 @@ contains
     type(shell_state), intent(in) :: now
     type(shell_law_type), intent(in) :: law
     real(wp) :: n(6)                         !! [force/length]
+    real(wp) :: both(3,2)
 
-    n = in_space(law%membrane(now%eps), now%a)/now%j
+    both = forces(now, law)
+    n = in_space(both(:,1), now%a)/now%j
   end function membrane_force
 
   pure function bending_moment(now, law) result(m)
     type(shell_state), intent(in) :: now
     type(shell_law_type), intent(in) :: law
     real(wp) :: m(6)                         !! [force]; positive: tension at the top
+    real(wp) :: both(3,2)
 
-    m = in_space(law%bending(now%kap), now%a)/now%j
+    both = forces(now, law)
+    m = in_space(both(:,2), now%a)/now%j
   end function bending_moment
+
+  pure function forces(now, law) result(both)
+    !! n and m in the directions of the start.
+    type(shell_state), intent(in) :: now
+    type(shell_law_type), intent(in) :: law
+    real(wp) :: both(3,2)
+    type(section_type) :: section
+    integer :: status
+
+    both(:,1) = law%membrane(now%eps)
+    both(:,2) = law%bending(now%kap)
+    if (law%points == 0) return
+    call section_of(law, curvature_at_start(now, law), section, status)
+    if (status == ok) call add_section_force(section, now%eps, now%kap, both(:,1), both(:,2))
+  end function forces
+
+  pure function curvature_at_start(now, law) result(b)
+    type(shell_state), intent(in) :: now
+    type(shell_law_type), intent(in) :: law
+    real(wp) :: b(3)                         !! 11, 22, 12 [1/length]
+
+    b = now%b
+    if (.not. law%is_linear) b = b + [now%kap(1), now%kap(2), now%kap(3)/2]
+  end function curvature_at_start
 
   pure subroutine layer_cauchy(now, law, z, sigma, status)
     type(shell_state), intent(in) :: now
@@ -42,6 +72,7 @@ contains
     real(wp) :: strain(3), g(3,2), normal(3), stretch, ratio
 
     strain = now%eps + z*now%kap
+    if (law%points > 0) strain = layer_strain(curvature_at_start(now, law), z, now%eps, now%kap)
     g = now%a
     ratio = 1
     status = ok

@@ -1,9 +1,9 @@
 module obj_reader
-  !! Quadrilateral meshes from Wavefront OBJ text: lines `v x y z` and `f a b c d`, where a vertex
-  !! may
-  !! be followed by /texture/normal and be counted backwards (-1 is the last one so far). Texture
-  !! coordinates, normals, groups, objects, materials and smoothing groups have no meaning here and
-  !! are passed over. Faces of other than four vertices are problems.
+  !! Quadrilateral meshes from Wavefront OBJ text: lines `v x y z` and `f a b c d ...`, where a
+  !! vertex may be followed by /texture/normal and be counted backwards (-1 is the last one so far).
+  !! Texture coordinates, normals, groups, objects, materials and smoothing groups have no meaning
+  !! here and are passed over. Faces of more than four vertices have T-junctions; faces of fewer are
+  !! problems.
   use kinds, only: wp
   use extraction_mesh, only: problem_list, whole_number, printable
   use growing_arrays, only: make_room
@@ -14,21 +14,23 @@ module obj_reader
 
 contains
 
-  subroutine read_obj(text, x, faces, line, problems)
+  subroutine read_obj(text, x, first, vertex, line, problems)
     character(*), intent(in) :: text                     !! the file
     real(wp), allocatable, intent(out) :: x(:,:)         !! vertices (3,nv) [length]
-    integer, allocatable, intent(out) :: faces(:,:)      !! vertices of faces (4,nf)
+    integer, allocatable, intent(out) :: first(:)        !! vertex of each face in the list (nf+1)
+    integer, allocatable, intent(out) :: vertex(:)       !! vertices of the faces
     integer, allocatable, intent(out) :: line(:)         !! of each face in the file (nf)
     type(problem_list), intent(inout) :: problems
 
     type(scanner_type) :: file
     character(:), allocatable :: word
     real(wp), allocatable :: points(:,:)
-    integer, allocatable :: corners(:)
-    integer :: nf, nv
+    integer :: n, nf, nv
     logical :: found
 
-    allocate (points(3,0), corners(0), line(0))
+    allocate (points(3,0), vertex(0), line(0))
+    allocate (first(1), source=1)
+    n = 0
     nf = 0
     nv = 0
     call file%open(text, '#')
@@ -43,10 +45,11 @@ contains
         call read_vertex(file, points(:,nv), problems)
       case ('f')
         nf = nf + 1
-        call make_room(corners, 4*nf)
         call make_room(line, nf)
+        call make_room(first, nf + 1)
         line(nf) = file%line
-        call read_face(file, nv, corners(4*nf-3:4*nf), problems)
+        call read_face(file, nf, nv, vertex, n, problems)
+        first(nf+1) = n + 1
       case ('vt', 'vn', 'vp', 'g', 'o', 's', 'usemtl', 'mtllib', 'l', 'p')
         cycle
       case default
@@ -56,12 +59,13 @@ contains
       end select
     end do
     allocate (x(3,nv), source=points(:,1:nv))
-    allocate (faces(4,nf), source=reshape(corners(1:4*nf), [4, nf]))
+    first = first(1:nf+1)
+    vertex = vertex(1:n)
     line = line(1:nf)
     if (nf == 0 .and. problems%count == 0) call problems%add(0, 'the file has no faces', &
       'Faces are lines f a b c d')
     if (problems%count > 0) return
-    call check_range(faces, nv, line, problems)
+    call check_range(first, vertex, nv, line, problems)
   end subroutine read_obj
 
   subroutine read_vertex(file, x, problems)
@@ -87,17 +91,18 @@ contains
     end if
   end subroutine read_vertex
 
-  subroutine read_face(file, nv, corners, problems)
+  subroutine read_face(file, nf, nv, vertex, n, problems)
     type(scanner_type), intent(inout) :: file
-    integer, intent(in) :: nv                    !! vertices so far
-    integer, intent(out) :: corners(4)
+    integer, intent(in) :: nf                            !! number of the face
+    integer, intent(in) :: nv                            !! vertices so far
+    integer, allocatable, intent(inout) :: vertex(:)     !! vertices of the faces so far
+    integer, intent(inout) :: n                          !! in use
     type(problem_list), intent(inout) :: problems
 
     character(:), allocatable :: word
-    integer :: code, id, n, slash
+    integer :: before, code, id, slash
 
-    corners = 0
-    n = 0
+    before = n
     do
       call file%next_word(word)
       if (len(word) == 0) exit
@@ -114,33 +119,35 @@ contains
       end if
       if (id < 0) id = nv + 1 + id
       n = n + 1
-      if (n <= 4) corners(n) = id
+      call make_room(vertex, n)
+      vertex(n) = id
       if (id < 1) then
         call problems%add(file%line, 'a face names a vertex before the first one', '')
         return
       end if
     end do
-    if (n == 4) return
-    if (n == 3) then
-      call problems%add(file%line, 'a face is a triangle', &
-        'All faces need four vertices: subdivide the mesh once (Catmull-Clark), or remesh it')
-    else
-      call problems%add(file%line, 'a face has ' // whole_number(n) // ' vertices', &
-        'All faces need four; T-junctions are not read from OBJ files')
+    if (n - before == 3) then
+      call problems%add(file%line, 'face ' // whole_number(nf) // ' is a triangle', &
+        'All faces need four corners: subdivide the mesh once (Catmull-Clark), or remesh it')
+    else if (n - before < 3) then
+      call problems%add(file%line, 'face ' // whole_number(nf) // ' has ' // &
+        whole_number(n - before) // ' vertices', 'All faces need four corners')
     end if
   end subroutine read_face
 
-  subroutine check_range(faces, nv, line, problems)
+  subroutine check_range(first, vertex, nv, line, problems)
     !! Vertices may follow the faces that name them.
-    integer, intent(in) :: faces(:,:), nv, line(:)
+    integer, intent(in) :: first(:), vertex(:), nv, line(:)
     type(problem_list), intent(inout) :: problems
 
     integer :: f
 
-    do f = 1, size(faces, 2)
-      if (any(faces(:,f) > nv)) call problems%add(line(f), 'face ' // whole_number(f) // &
-        ' names vertex ' // whole_number(maxval(faces(:,f))) // ', which does not exist', &
-        'The file has ' // whole_number(nv) // ' vertices')
+    do f = 1, size(line)
+      associate (face => vertex(first(f):first(f+1)-1))
+        if (any(face > nv)) call problems%add(line(f), 'face ' // whole_number(f) // &
+          ' names vertex ' // whole_number(maxval(face)) // ', which does not exist', &
+          'The file has ' // whole_number(nv) // ' vertices')
+      end associate
     end do
   end subroutine check_range
 end module obj_reader

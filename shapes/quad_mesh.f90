@@ -12,6 +12,7 @@ module quad_mesh
   !! the boundary is treated alike.
   use kinds, only: wp
   use extraction_mesh, only: whole_number
+  use half_edges, only: pair_half_edges
   implicit none (type, external)
   private
   public :: quad_mesh_type, create_quad_mesh, set_interval, set_crease, find_edge, next_corner, &
@@ -208,45 +209,13 @@ contains
     type(quad_mesh_type), intent(inout) :: mesh
     character(:), allocatable, intent(inout) :: message
 
-    integer, allocatable :: head(:), next(:)
-    integer :: a, b, c, other, same, turned
+    integer :: c, face(4*mesh%nf), next(4*mesh%nf)
 
-    ! corners by the smaller vertex of their edges
-    allocate (head(mesh%nv), next(4*mesh%nf), source=0)
     do c = 1, 4*mesh%nf
-      a = min(mesh%vertex(c), mesh%vertex(next_corner(c)))
-      next(c) = head(a)
-      head(a) = c
+      face(c) = face_of(c)
+      next(c) = next_corner(c)
     end do
-    do c = 1, 4*mesh%nf
-      a = mesh%vertex(c)
-      b = mesh%vertex(next_corner(c))
-      same = 0
-      turned = 0
-      other = head(min(a, b))
-      do while (other > 0)
-        if (other /= c .and. mesh%vertex(other) == a .and. mesh%vertex(next_corner(other)) == b) &
-          same = other
-        if (mesh%vertex(other) == b .and. mesh%vertex(next_corner(other)) == a) then
-          if (turned > 0) same = turned
-          turned = other
-        end if
-        other = next(other)
-      end do
-      if (same > 0 .and. turned > 0) then
-        message = 'more than two faces meet at the edge of vertices ' // whole_number(a) // &
-          ' and ' // whole_number(b) // ', faces ' // whole_number(face_of(c)) // ' and ' // &
-          whole_number(face_of(same)) // ' among them: the surface is not a manifold'
-        return
-      else if (same > 0) then
-        message = 'faces ' // whole_number(face_of(min(c, same))) // ' and ' // &
-          whole_number(face_of(max(c, same))) // ' run along the edge of vertices ' // &
-          whole_number(a) // ' and ' // whole_number(b) // &
-          ' in the same direction: turn one of them round'
-        return
-      end if
-      mesh%twin(c) = turned
-    end do
+    call pair_half_edges(mesh%nv, mesh%vertex, next, face, mesh%twin, message)
   end subroutine find_twins
 
   pure subroutine find_fans(mesh, message)

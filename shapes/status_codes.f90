@@ -12,6 +12,7 @@ module status_codes
   public :: outside_patch
   public :: wrong_dimension
   public :: side_unknown
+  public :: too_thick
   public :: status_text
 
   integer, parameter :: ok = 0
@@ -40,6 +41,7 @@ module status_codes
   integer, parameter :: outside_patch = 23  !! a slave point has left the master facets that its element knows
   integer, parameter :: wrong_dimension = 24  !! an element formulation on elements of another dimension
   integer, parameter :: side_unknown = 25  !! the gap at the start does not tell on which side of a shell the slave is
+  integer, parameter :: too_thick = 26  !! layers of a shell lie beyond its centre of curvature
 
 contains
 
@@ -75,8 +77,9 @@ contains
       'part, opposite to the master and nearer to it than the opening at which it is spent'
     case (outside_patch); text = 'a slave point has left the master facets that its element knows (PATCH)'
     case (wrong_dimension);     text = 'the element type is made for another parametric dimension (surfaces in space take SHELl)'
-    case (side_unknown); text = 'at the start its points lie on both sides of the master shell, or on none. Write SIDE=1, or '// &
-      'SIDE=-1 where the slave lies on the side that the normal of the master, t_1 x t_2, points away from'
+    case (side_unknown); text = 'at the start its points lie on both sides of the master shell, or on none. Let the normals of '// &
+      'its patches, t_1 x t_2, point to the same side, and write SIDE=1, or SIDE=-1 where the slave lies on the other side'
+    case (too_thick); text = 'half the thickness of the shell is more than a radius of its curvature: its layers (POINts) intersect'
     case default;               text = 'unknown status'
     end select
   end function status_text

@@ -115,7 +115,7 @@ END
 STOP
 EOF
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >wrong.obj
-"$BEZEL" wrong.inp --check </dev/null 2>&1 | grep -q 'wrong.obj:4: QUADmesh: a face is a triangle' || {
+"$BEZEL" wrong.inp --check </dev/null 2>&1 | grep -q 'wrong.obj:4: QUADmesh: face 1 is a triangle' || {
   echo 'a triangle of an OBJ file is not told'
   failures=$((failures + 1))
 }

@@ -40,6 +40,11 @@ expect pipe load_uz -1.8248e-5 1e-8
 solve dome pinched_hemisphere p=5 n=8
 expect dome a_ux 0.0924 2e-4
 expect dome b_uy -0.0924 2e-4
+# T-splines refined towards the force; the second reaches the pole, a side of no length
+solve pipe_t pinched_cylinder basis=T p=5 n=8
+expect pipe_t load_uz -1.8248e-5 1e-8
+solve dome_t pinched_hemisphere basis=T p=5 n=4
+expect dome_t a_ux 0.0924 2e-4
 
 # The elastica: 1.6064, 4.9346 at half load, 3.2894, 6.6996 at full load, and a circle; extension leaves 1e-3.
 solve shear cantilever_shear p=4 n=10
@@ -54,12 +59,22 @@ expect roll tip_uz 7.6394 0.01 5
 expect roll tip_ux -12 0.01
 expect roll tip_uz 0 0.01
 
-# Sze, Liu and Lo 2004, shear-flexible elements: within 0.7 % at half and full load.
+# Sze, Liu and Lo 2004, shear-flexible elements: within 0.9 % at each load.
 solve hole hemisphere_hole p=4 n=16 steps=4
+expect hole a_uy 2.596 0.021 1
+expect hole b_ux -3.833 0.034 1
 expect hole a_uy 3.406 0.024 2
 expect hole b_ux -5.902 0.042 2
+expect hole a_uy 3.816 0.027 3
+expect hole b_ux -7.234 0.050 3
 expect hole a_uy 4.067 0.028
 expect hole b_ux -8.178 0.058
+
+# A thick quarter ring, R/t = 5: Winkler's curved beam 0.99399311 with points over the thickness
+solve thick curved_beam p=5 t=2 through=5
+expect thick tip_uz 0.99399311 1e-7
+solve closed curved_beam p=5 t=2
+expect closed tip_uz 1.01333333 1e-6
 
 # A ring under pressure, closed forms of St. Venant-Kirchhoff: 2.43382 and 2.05390; bending adds t^2/R^2.
 solve follower shell_pressure kind=FOLLower

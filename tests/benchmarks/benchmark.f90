@@ -1,19 +1,28 @@
 program benchmark
   !! What the parts of the program cost, as lines for tests/benchmark.
-  !! benchmark PROJECT SCRATCH: the project's folder, a folder for files that are written and removed.
+  !! benchmark PROJECT SCRATCH [p [layers]]: the project's folder, a folder for files that are written and removed; p: only the
+  !! shell element of this degree; layers: with points over the thickness.
   use model_benchmarks, only: measure_assembly, measure_system
   use adapter_benchmarks, only: measure_adapters
   use search_benchmarks, only: measure_search
-  use element_benchmarks, only: measure_solid_kernel, measure_shell_kernel, measure_shape_functions, &
+  use element_benchmarks, only: measure_solid_kernel, measure_shell_kernel, measure_layered_shell, measure_shape_functions, &
     measure_interface_kernel, &
     measure_projection
   implicit none (type, external)
   integer :: dimension, p, mesh
-  character(1000) :: project, scratch
+  character(1000) :: project, scratch, part
 
   call get_command_argument(1, project)
   call get_command_argument(2, scratch)
+  call get_command_argument(3, part)
   if (scratch == '') error stop 'benchmark PROJECT SCRATCH: two folders are expected'
+  if (part /= '') then
+    read (part, *) p
+    call get_command_argument(4, part)
+    if (part == '') call measure_shell_kernel(p)
+    if (part /= '') call measure_layered_shell(p)
+    stop
+  end if
 
   do dimension = 2, 3
     do p = 1, merge(4, 3, dimension == 2)
@@ -29,6 +38,7 @@ program benchmark
   end do
   do p = 2, 5
     call measure_shell_kernel(p)
+    call measure_layered_shell(p)
   end do
   do dimension = 2, 3
     do p = 1, 4

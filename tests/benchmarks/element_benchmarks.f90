@@ -20,7 +20,7 @@ module element_benchmarks
   use report, only: put, text
   implicit none (type, external)
   private
-  public :: measure_solid_kernel, measure_shell_kernel, measure_shape_functions, measure_interface_kernel, &
+  public :: measure_solid_kernel, measure_shell_kernel, measure_layered_shell, measure_shape_functions, measure_interface_kernel, &
     measure_projection
 
 contains
@@ -64,6 +64,30 @@ contains
     call put('element', name_of(ndm, p), 'residual and tangent, kernel [us]', 1.0e6_wp*watch%best)
   end subroutine measure_solid_kernel
 
+  subroutine measure_layered_shell(p)
+    !! The tangent with three points over the thickness.
+    integer, intent(in) :: p
+    type(shell) :: sample
+    type(shell_law_type) :: law
+    type(stopwatch_type) :: watch
+    real(wp), allocatable :: ue(:, :), fe(:, :), ke(:, :, :, :)
+    real(wp) :: energy
+    integer :: nen, status
+
+    sample = curved_shell(p, p + 1)
+    nen = size(sample%we)
+    call define_shell_law(1.0_wp, 0.3_wp, 0.01_wp, .false., law, status)
+    call law%integrate_by_points(3)
+    allocate (ue(3, nen), fe(3, nen), ke(3, nen, 3, nen))
+    ue = 0
+    call watch%begin()
+    do while (watch%goes_on())
+      call shell_tangent(sample%dshp, sample%frame, sample%area, ue, law, fe, ke, energy, status)
+    end do
+    if (status /= ok) error stop 'element_benchmarks: the sample is too thick'
+    call put('shell element', 'p = '//text(p), 'the same, 3 points over the thickness [us]', 1.0e6_wp*watch%best)
+  end subroutine measure_layered_shell
+
   subroutine measure_shell_kernel(p)
     !! St. Venant-Kirchhoff, p + 1 Gauss points a direction.
     integer, intent(in) :: p
@@ -77,7 +101,7 @@ contains
 
     sample = curved_shell(p, p + 1)
     nen = size(sample%we)
-    call define_shell_law(1.0_wp, 0.3_wp, 0.1_wp, .false., law, status)
+    call define_shell_law(1.0_wp, 0.3_wp, 0.01_wp, .false., law, status)
     allocate (ue(3, nen), fe(3, nen), ke(3, nen, 3, nen))
     do a = 1, nen
       do i = 1, 3

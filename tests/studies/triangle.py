@@ -53,7 +53,7 @@ meshes = list(runs)
 runs += [("mesh 1, 2 x 2 points", Pull("triangle_1_gp2", mesh=1, gp=2)),
          ("mesh 1, 6 x 6 points", Pull("triangle_1_gp6", mesh=1, gp=6)),
          ("mesh 2, 2 x 2 points", Pull("triangle_2_gp2", mesh=2, gp=2, path="auto")),
-         ("nu = 0", Pull("triangle_2_nu0", mesh=2, nu=0))]
+         ("mesh 2, nu = 0", Pull("triangle_2_nu0", mesh=2, nu=0))]
 
 rows = []
 for lift, theory in expected.items():
