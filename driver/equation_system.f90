@@ -5,7 +5,7 @@ module equation_system
   use kinds, only: wp
   use status_codes, only: ok, stale_pattern
   use model_data, only: model_type
-  use dof_map, only: dof_map_type, build_dof_map
+  use dof_map, only: dof_map_type, build_dof_map, is_linked
   use end_face, only: end_face_geometry
   use user_element, only: mirror
   use sparse_pattern, only: pattern_builder, block_positions, begin_pattern, add_node_lists, add_equation_lists, &
@@ -102,29 +102,50 @@ contains
     integer, allocatable, intent(out) :: ptr(:)    !! (ndf*nen+1) where the terms of a dof begin
     integer, allocatable, intent(out) :: eq(:)     !! equations, 0 for prescribed dofs
     real(wp), allocatable, intent(out) :: coef(:)
-    integer :: a, i, m, n, e
+    integer :: a, i, n, e, first, last
 
-    allocate (ptr(ndf*size(nodes) + 1), eq(0), coef(0))
+    allocate (ptr(ndf*size(nodes) + 1))
     n = 1
     ptr(1) = 1
     do a = 1, size(nodes)
       do i = 1, ndf
         e = self%map%eq(i, nodes(a))
-        if (e >= 0) then
-          eq = [eq, e]
-          coef = [coef, 1.0_wp]
-        else
-          associate (d => self%map%links(-e))
-            do m = 1, size(d%nodes)
-              eq = [eq, self%map%eq(d%comps(m), d%nodes(m))]
-              coef = [coef, d%coefs(m)]
-            end do
-          end associate
-        end if
         n = n + 1
-        ptr(n) = size(eq) + 1
+        ptr(n) = ptr(n - 1) + 1
+        if (is_linked(e)) ptr(n) = ptr(n - 1) + size(self%map%links(-e)%nodes)
       end do
     end do
+    allocate (eq(ptr(n) - 1), coef(ptr(n) - 1))
+    n = 0
+    do a = 1, size(nodes)
+      do i = 1, ndf
+        e = self%map%eq(i, nodes(a))
+        n = n + 1
+        first = ptr(n)
+        last = ptr(n + 1) - 1
+        if (is_linked(e)) then
+          associate (d => self%map%links(-e))
+            eq(first:last) = equations_of(self%map%eq, d%comps, d%nodes)
+            coef(first:last) = d%coefs
+          end associate
+        else
+          eq(first) = e
+          coef(first) = 1
+        end if
+      end do
+    end do
+
+  contains
+
+    pure function equations_of(eq, comps, nodes) result(found)
+      integer, intent(in) :: eq(:, :), comps(:), nodes(:)
+      integer :: found(size(nodes))
+      integer :: m
+
+      do m = 1, size(nodes)
+        found(m) = eq(comps(m), nodes(m))
+      end do
+    end function equations_of
   end subroutine dependence
 
   subroutine clear(self)

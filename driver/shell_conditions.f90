@@ -210,10 +210,14 @@ contains
     where (abs(n) < 1e-9_wp) n = 0
     if (norm2(n) > 0) n = n/norm2(n)
     off = maxval(abs(matmul(n, edge%x) - dot_product(n, edge%x(:, 1))))/maxval(abs(model%x))
-    slant = 1 - minval(matmul(n, edge%nu))
+    slant = 0
+    do a = 1, size(edge%nu, 2)
+      slant = max(slant, norm2(edge%nu(:, a) - n))
+    end do
     if (off > near .or. slant > near) then
       call log%add_error(request%at, 'SYMMetry', 'the shell does not meet a plane at right angles along ' // &
-        quoted(request%set), 'Along an edge of symmetry the surface is normal to one plane')
+        quoted(request%set), 'Along an edge of symmetry the surface is normal to one plane; of a QUADmesh on a sphere, '// &
+        'write SPHEre x y z r SYMMetric')
       return
     end if
     n1 = size(edge%first)
