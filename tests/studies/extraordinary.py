@@ -62,7 +62,7 @@ def smoothness():
     found, _, _ = lines("study_extraordinary", "smoothness")
     rows = [[row["surface"].replace("_", " "), row["faces"], row["points"], f"{float(row['gap']):.0e}",
              f"{float(row['turn']):.0e}", f"{float(row['sums']):.0e}"] for row in found]
-    common.table("extraordinary_smoothness", ["surface", "faces at the first vertex", "control points", "largest gap",
+    common.table("extraordinary_smoothness", ["surface", "faces at a vertex, at most", "control points", "largest gap",
                                                "largest turn of the normal [rad]", "functions' sum - 1"], rows)
 
 
@@ -71,7 +71,7 @@ def extraction():
     rows = []
     first = None
     _, _, least = lines("study_extraordinary", "extraction", "0")  # what starting a process takes: less cannot be told
-    for levels in range(3, 7):
+    for levels in range(4, 7):
         tries = [lines("study_extraordinary", "extraction", str(levels)) for _ in range(3)]
         best = min(seconds for _, seconds, _ in tries)
         (row,), _, peak = tries[0]
