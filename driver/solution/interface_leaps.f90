@@ -53,7 +53,7 @@ contains
 
     leap = 0
     if (all(points%facet > 0)) return
-    associate (nodes => points%master%set%nodes)
+    associate (nodes => points%master%set%nodes(:points%master%set%node_ptr(points%master%set%ne + 1) - 1))
       mean = [(sum(du(a, nodes))/size(nodes), a=1, size(mean))]
       stir = 0
       do a = 1, size(nodes)
