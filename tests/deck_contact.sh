@@ -125,14 +125,16 @@ within hertz_3d "the error of the pressure profile" "$profile" 0 0.13
 
 # A block that would move through a plate in one increment: that is refused, and shorter ones find the contact.
 leap=$BEZEL_SOURCE/tests/decks/leap.inp
-for steps in 1 20; do
-  "$BEZEL" "$leap" steps=$steps --out "leap$steps.out" >"leap$steps.txt" 2>&1 </dev/null || fail "leap, steps=$steps: the run fails"
+for settings in 'moves=block' 'moves=plate' 'side=-1'; do
+  for steps in 1 20; do
+    # shellcheck disable=SC2086
+    "$BEZEL" "$leap" $settings steps=$steps --out "leap$steps.out" >"leap$steps.txt" 2>&1 </dev/null || fail "leap, $settings steps=$steps: the run fails"
+  done
+  grep -q 'increments were cut back because slave points moved past the search distance' leap1.txt || fail "leap, $settings: not said"
+  grep -q 'moved past the search distance' leap20.txt && fail "leap, $settings: said although increments are short"
+  within "leap, $settings" 'the force of one step over that of 20 short ones' \
+    "$(awk -v a="$(last leap1 top_ry)" -v b="$(last leap20 top_ry)" 'BEGIN { print b < -100 ? a / b : "no force" }')" 0.9999999 1.0000001
 done
-grep -q 'increments were cut back because slave points moved past the search distance' leap1.txt || fail 'leap: not said'
-grep -q 'moved past the search distance' leap20.txt && fail 'leap: said although increments are short'
-force=$(last leap20 top_ry)
-within 'leap' 'the force of one step over that of 20 short ones' \
-  "$(awk -v a="$(last leap1 top_ry)" -v b="$force" 'BEGIN { print b < -100 ? a / b : "no force" }')" 0.9999999 1.0000001
 
 echo "contact decks: $failures failures"
 [ $failures -eq 0 ]

@@ -205,7 +205,7 @@ contains
 
   subroutine fit(sphere, is_symmetric, elements, sides, first, mesh)
     type(sphere_type), intent(in) :: sphere
-    logical, intent(in) :: is_symmetric               !! pieces in planes through the centre meet these at right angles
+    logical, intent(in) :: is_symmetric               !! pieces in coordinate planes through the centre meet these at right angles
     integer, intent(in) :: elements(:), sides(:), first(:)   !! pieces of the boundary
     type(extraction_mesh_type), intent(inout), target :: mesh
     logical, allocatable :: held(:, :), on_piece(:)
@@ -226,8 +226,12 @@ contains
           held(i, :) = held(i, :) .or. on_piece
       end do
     end do
+    on_piece = .false.
+    do m = 1, size(elements)
+      on_piece(mesh%elements%connectivity(elements(m))) = .true.
+    end do
     do i = 1, 3
-      call rows(i)%start(.not. held(i, :))
+      call rows(i)%start(.not. held(i, :) .and. on_piece)
     end do
     if (is_symmetric) then
       do m = 1, size(elements)

@@ -90,7 +90,8 @@ contains
     do i = 1, n
       call prepare_interface(model, i, eq%interfaces(i), status, place)
       if (status /= ok) then
-        eq%fault = 'slave surface of interface '//model%interfaces(i)%name//': '//status_text(status)
+        eq%fault = model%interfaces(i)%place//': CONTact: slave surface of interface '//model%interfaces(i)%name//': '// &
+          status_text(status)
         return
       end if
       eq%point_count = eq%point_count + eq%interfaces(i)%np

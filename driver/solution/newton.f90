@@ -114,6 +114,9 @@ contains
       end if
       if (k > 1 .or. continue_rate) then
         ! nothing left to correct: the state stands without another solution
+        if (k == 1 .and. report%residual > settings%residual_tolerance) then
+          if (reference <= rounding*largest_stiffness_force(eq)) report%residual = size_r/largest_stiffness_force(eq)
+        end if
         if (report%residual <= settings%residual_tolerance .and. size(moves) == 0 .and. eq%forced == 0) then
           call final_record(eq, report, was_active)
           return
@@ -209,6 +212,15 @@ contains
     reference = max(reference, force_scale(eq), left_over*eq%largest_force)
     size_r = eq%system%map%residual_size(eq%r, reference)
   end subroutine measure
+
+  pure function largest_stiffness_force(eq) result(force)
+    !! Largest entry of the tangent times the largest control value: where all reactions are only rounding of this, bodies
+    !! move freely (towards each other), and there is nothing else to compare a residual with.
+    type(equilibrium_type), intent(in) :: eq
+    real(wp) :: force
+
+    force = maxval(abs(eq%system%matrix%values))*eq%system%map%value_size(eq%u)
+  end function largest_stiffness_force
 
   pure function ratio(size_r, reference) result(relative)
     real(wp), intent(in) :: size_r, reference

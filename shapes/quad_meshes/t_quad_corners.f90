@@ -78,7 +78,7 @@ contains
         message = 'face ' // whole_number(f) // ' has ' // whole_number(size(own)) // &
           ' vertices, ' // whole_number(left + count(own == junction)) // &
           ' of which can be T-junctions (vertices inside the surface of three faces, and on a ' // &
-          'side in one of them only): it is not a quadrilateral'
+          'side in one of them only): it is not a quadrilateral. Divide the face at its other vertices'
         return
       end if
     end associate
