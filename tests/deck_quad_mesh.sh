@@ -120,5 +120,38 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >wrong.obj
   failures=$((failures + 1))
 }
 
+# Faces that have vertices of their own along a seam are told, and only they.
+for vertices in '2 6 7 3' '5 6 7 8'; do
+  cat >"seam_${vertices::1}.inp" <<EOF
+FEAP * * two faces side by side
+0 0 0 3 3
+
+QUADmesh sheet MATErial=1
+  VERTices 8
+    0 0 0
+    1 0 0
+    1 1 0
+    0 1 0
+    1 0 0
+    2 0 0
+    2 1 0
+    1 1 0
+  FACEs 2
+    1 2 3 4
+    $vertices
+
+MATErial 1
+  SHELl
+  ELAStic ISOTropic 1e6 0.3
+  THICkness 0.01
+
+END
+STOP
+EOF
+  "$BEZEL" "seam_${vertices::1}.inp" --check >"seam_${vertices::1}.txt" 2>&1 </dev/null
+done
+grep -q 'vertices 2 and 5 lie on each other on the boundary' seam_5.txt || { echo 'doubled vertices: not told'; failures=$((failures + 1)); }
+grep -q 'lie on each other' seam_2.txt && { echo 'doubled vertices: told where there are none'; failures=$((failures + 1)); }
+
 echo "$failures failures"
 [ $failures -eq 0 ]

@@ -56,6 +56,7 @@ module quad_mesh_commands
   use right_angles, only: add_right_angle
   use sphere_target, only: sphere_type
   use t_sweep, only: sweep_type
+  use tie_nodes, only: coinciding_nodes
   implicit none (type, external)
   private
   public :: read_quad_mesh
@@ -103,6 +104,7 @@ contains
     if (log%error_count() == error_count .and. .not. new%is_built) call command%add_error(log, &
       'the mesh has no faces', 'Give FILE="name.obj", or VERTices and FACEs')
     if (log%error_count() == error_count) then
+      if (.not. new%has_t_junctions) call warn_of_doubled_vertices(new%mesh, command, log)
       if (new%has_t_junctions) then
         call build_t_surface(new, mesh, elements, sides, first, message)
       else
@@ -120,6 +122,30 @@ contains
     call begin_origin(draft, command, 'QUADmesh', name)
     call add_to_mesh(mesh, elements, sides, first, new%sweep, name, material, body, command, model, draft, log)
   end subroutine read_quad_mesh
+
+  subroutine warn_of_doubled_vertices(mesh, command, log)
+    !! Two boundary vertices at one place: files that give each face its own vertices make a surface of loose parts.
+    type(quad_mesh_type), intent(in) :: mesh
+    type(record), intent(in) :: command
+    type(message_log), intent(inout) :: log
+    real(wp), parameter :: rounding = 1e-9_wp      !! of the mesh's size
+    integer, allocatable :: group(:), map(:)
+    integer :: different, v
+    character(40) :: numbers
+
+    allocate (group(mesh%nv), map(mesh%nv))
+    do v = 1, mesh%nv
+      group(v) = merge(1, 0, mesh%is_boundary(v))
+    end do
+    call coinciding_nodes(mesh%x, [(1.0_wp, v=1, mesh%nv)], group, rounding*maxval(abs(mesh%x)), map, different)
+    do v = 1, mesh%nv
+      if (map(v) == v) cycle
+      write (numbers, '(i0,a,i0)') map(v), ' and ', v
+      call command%add_warning(log, 'vertices ' // trim(numbers) // ' lie on each other on the boundary: the surface is '// &
+        'open between them', 'Where it should go on, let the faces name the same vertex')
+      return
+    end do
+  end subroutine warn_of_doubled_vertices
 
   subroutine build_surface(new, mesh, elements, sides, first, message)
     type(quad_draft), intent(inout) :: new
