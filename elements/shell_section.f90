@@ -17,7 +17,7 @@ module shell_section
   use shell_law, only: shell_law_type
   implicit none (type, external)
   private
-  public :: section_type, section_of, layer_strain, add_section_force
+  public :: section_type, section_of, layer_strain, layer_inverse, add_section_force
 
   type :: section_type
     real(wp) :: membrane(3,3)      !! excess of A [force/length]
@@ -33,10 +33,16 @@ contains
     type(shell_law_type), intent(in) :: law
     real(wp), intent(in) :: b(3)              !! curvature of the start 11, 22, 12 [1/length]
     type(section_type), intent(out) :: excess
-    integer, intent(out) :: status            !! ok; too_thick: a layer beyond the centre of curvature
-    real(wp) :: l_e(3,3), l_k(3,3), stress(3,3), ratio, z
+    integer, intent(out) :: status            !! ok; too_thick: a face lies beyond a centre of curvature
+    real(wp) :: l_e(3,3), l_k(3,3), inverse(3), stress(3,3), face(2), ratio, z
     integer :: g
 
+    ! M is linear in z: positive definite at both faces it is so between them
+    call layer_inverse(b, -law%thickness/2, inverse, face(1))
+    call layer_inverse(b, law%thickness/2, inverse, face(2))
+    status = too_thick
+    if (.not. all(face > 0)) return
+    status = ok
     ! the closed form, taken off
     excess%membrane = stress_of(law, -law%thickness, identity)
     excess%coupling = 0
@@ -44,15 +50,12 @@ contains
     do g = 1, law%points
       z = law%height(g)*law%thickness
       call layer_maps(b, z, l_e, l_k, ratio)
-      status = too_thick
-      if (.not. ratio > 0) return
       stress = stress_of(law, law%share(g)*law%thickness*ratio, l_k)
       excess%bending = excess%bending + matmul(transpose(l_k), stress)
       excess%coupling = excess%coupling + matmul(transpose(l_e), stress)
       stress = stress_of(law, law%share(g)*law%thickness*ratio, l_e)
       excess%membrane = excess%membrane + matmul(transpose(l_e), stress)
     end do
-    status = ok
   end subroutine section_of
 
   pure function stress_of(law, weight, strain) result(stress)
@@ -93,18 +96,15 @@ contains
     real(wp), intent(in) :: z                 !! height [length]
     real(wp), intent(out) :: l_e(3,3), l_k(3,3)   !! strain of the layer from eps and from kap
     real(wp), intent(out) :: ratio            !! det M: its area over that of the mid-surface; not positive: no maps
-    real(wp) :: by_b(3,3), inverse(3,3), rho(3,3)
+    real(wp) :: by_b(3,3), inverse(3), by_inverse(3,3), rho(3,3)
     integer :: i
 
     l_e = 0
     l_k = 0
-    ratio = (1 - z*b(1))*(1 - z*b(2)) - (z*b(3))**2
-    if (.not. (ratio > 0 .and. 1 - z*b(1) > 0)) then
-      ratio = min(ratio, 0.0_wp)
-      return
-    end if
+    call layer_inverse(b, z, inverse, ratio)
+    if (.not. ratio > 0) return
     by_b = congruence(b)
-    inverse = congruence([1 - z*b(2), 1 - z*b(1), z*b(3)]/ratio)
+    by_inverse = congruence(inverse)
     rho(:,1) = -[b(1), 0.0_wp, b(3)]
     rho(:,2) = -[0.0_wp, b(2), b(3)]
     rho(:,3) = -[b(3), b(3), b(1) + b(2)]/2
@@ -114,9 +114,24 @@ contains
       l_e(i,i) = l_e(i,i) + 1
       l_k(i,i) = l_k(i,i) + z
     end do
-    l_e = matmul(inverse, l_e)
-    l_k = matmul(inverse, l_k)
+    l_e = matmul(by_inverse, l_e)
+    l_k = matmul(by_inverse, l_k)
   end subroutine layer_maps
+
+  pure subroutine layer_inverse(b, z, inverse, ratio)
+    real(wp), intent(in) :: b(3)              !! curvature of the start 11, 22, 12 [1/length]
+    real(wp), intent(in) :: z                 !! height [length]
+    real(wp), intent(out) :: inverse(3)       !! M^-1 11, 22, 12
+    real(wp), intent(out) :: ratio            !! det M; not positive: beyond a centre of curvature, no inverse
+
+    inverse = 0
+    ratio = (1 - z*b(1))*(1 - z*b(2)) - (z*b(3))**2
+    if (ratio > 0 .and. 1 - z*b(1) > 0) then
+      inverse = [1 - z*b(2), 1 - z*b(1), z*b(3)]/ratio
+    else
+      ratio = min(ratio, 0.0_wp)
+    end if
+  end subroutine layer_inverse
 
   pure function congruence(s) result(t)
     !! X -> S X S of symmetric 2 x 2 matrices, X and the result packed as strains, S as 11, 22, 12.

@@ -6,12 +6,17 @@ module shell_stress
   !!   Cauchy stress   sigma(z) = S_ij(z) g_i (x) g_j / J,   S = C (eps + z kap),   g_i = a_i + z kap_ij a^j,
   !!                   J = |g_1 x g_2| lambda_3,   lambda_3^2 = 1 - 2 nu/(1 - nu) (E_11 + E_22)
   !!
-  !! With points over the thickness forces, moments and strains are those of shell_section, with the metric of the layers.
+  !! With points over the thickness forces, moments and strains are those of shell_section, with the metric of the layers. The
+  !! strain E is then that in the orthonormal directions E_i of the layer, whose tangents were M E_i, M = 1 - z B, and are
+  !! a_i - z b_ij a^j now, so that
+  !!
+  !!   sigma(z) = S_ij g_i (x) g_j / J,   S = C E,   g_i = M^-1_ij (a_j - z b_jk a^k)
+  !!
   !! z runs along the normal a_1 x a_2 from -t/2 (bottom) to t/2 (top). A linear law has a_i = E_i, j = J = 1.
   use kinds, only: wp
-  use status_codes, only: ok, law_failed
+  use status_codes, only: ok, law_failed, too_thick
   use shell_law, only: shell_law_type
-  use shell_section, only: section_type, section_of, add_section_force, layer_strain
+  use shell_section, only: section_type, section_of, add_section_force, layer_strain, layer_inverse
   use shell_kernel, only: shell_state
   implicit none (type, external)
   private
@@ -68,17 +73,28 @@ contains
     type(shell_law_type), intent(in) :: law
     real(wp), intent(in) :: z                !! height over the mid-surface [length]
     real(wp), intent(out) :: sigma(6)        !! Cauchy stress [stress]
-    integer, intent(out) :: status           !! ok; law_failed: the thickness or the area vanishes
-    real(wp) :: strain(3), g(3,2), normal(3), stretch, ratio
+    integer, intent(out) :: status           !! ok; law_failed: the thickness or the area vanishes; too_thick
+    real(wp) :: strain(3), start(3), inverse(3), g(3,2), normal(3), stretch, ratio
 
+    sigma = 0
     strain = now%eps + z*now%kap
-    if (law%points > 0) strain = layer_strain(curvature_at_start(now, law), z, now%eps, now%kap)
+    if (law%points > 0) then
+      start = curvature_at_start(now, law)
+      call layer_inverse(start, z, inverse, ratio)
+      status = too_thick
+      if (.not. ratio > 0) return
+      strain = layer_strain(start, z, now%eps, now%kap)
+    end if
     g = now%a
     ratio = 1
     status = ok
     if (.not. law%is_linear) then
-      g(:,1) = g(:,1) + z*(now%kap(1)*now%dual(:,1) + now%kap(3)/2*now%dual(:,2))
-      g(:,2) = g(:,2) + z*(now%kap(3)/2*now%dual(:,1) + now%kap(2)*now%dual(:,2))
+      if (law%points > 0) then
+        g = g - z*by_pair(now%b, now%dual)
+        g = by_pair(inverse, g)
+      else
+        g = g + z*by_pair([now%kap(1), now%kap(2), now%kap(3)/2], now%dual)
+      end if
       normal(1) = g(2,1)*g(3,2) - g(3,1)*g(2,2)
       normal(2) = g(3,1)*g(1,2) - g(1,1)*g(3,2)
       normal(3) = g(1,1)*g(2,2) - g(2,1)*g(1,2)
@@ -86,12 +102,21 @@ contains
       ratio = norm2(normal)*sqrt(max(stretch, 0.0_wp))
       if (.not. ratio > 0) then
         status = law_failed
-        sigma = 0
         return
       end if
     end if
     sigma = in_space(law%layer_stress(strain), g)/ratio
   end subroutine layer_cauchy
+
+  pure function by_pair(s, g) result(h)
+    !! h_i = s_ij g_j.
+    real(wp), intent(in) :: s(3)             !! 11, 22, 12
+    real(wp), intent(in) :: g(3,2)
+    real(wp) :: h(3,2)
+
+    h(:,1) = s(1)*g(:,1) + s(3)*g(:,2)
+    h(:,2) = s(3)*g(:,1) + s(2)*g(:,2)
+  end function by_pair
 
   pure function in_space(s, g) result(tensor)
     !! s_ij g_i (x) g_j.
