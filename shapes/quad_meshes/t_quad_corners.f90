@@ -23,11 +23,12 @@ contains
     type(t_quad_mesh_type), intent(inout) :: mesh
     character(:), allocatable, intent(out) :: message    !! empty: nothing wrong
 
-    integer :: role(mesh%nh), f, h
+    integer, allocatable :: role(:)
+    integer :: f, h
     logical :: changed
 
     message = ''
-    role = corner
+    allocate (role(mesh%nh), source=corner)
     do h = 1, mesh%nh
       if (may_be_junction(mesh, h)) role(h) = unknown
     end do
@@ -116,10 +117,11 @@ contains
     integer, intent(inout) :: role(:)
     logical, intent(inout) :: changed
 
-    real(wp) :: bend(mesh%nh)
-    logical :: chosen(mesh%nh)
+    real(wp), allocatable :: bend(:)
+    logical, allocatable :: chosen(:)
     integer :: f, h, k, needed
 
+    allocate (bend(mesh%nh), chosen(mesh%nh))
     do f = 1, mesh%nf
       associate (a => mesh%first(f), b => mesh%first(f+1) - 1)
         if (.not. any(role(a:b) == unknown)) cycle

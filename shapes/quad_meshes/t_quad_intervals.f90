@@ -74,9 +74,13 @@ contains
     integer, allocatable, intent(out) :: strip(:)        !! of each half-edge
     integer, intent(out) :: n                            !! strips
 
-    integer :: root(mesh%nh), f, h, k, side(0:3)
+    integer, allocatable :: root(:)
+    integer :: f, h, k, side(0:3)
 
-    root = [(h, h = 1, mesh%nh)]
+    allocate (root(mesh%nh))
+    do h = 1, mesh%nh
+      root(h) = h
+    end do
     do h = 1, mesh%nh
       if (mesh%twin(h) > 0) call join(h, mesh%twin(h))
     end do

@@ -29,16 +29,17 @@ contains
     real(wp), allocatable :: interval(:), x(:,:)
     integer, allocatable :: first(:), vertex(:)
     logical, allocatable :: crease(:), is_corner(:)
-    integer :: middle(2,mesh%nh)                 ! new vertices on each edge, of which the first one
+    integer, allocatable :: middle(:,:)          ! new vertices on each edge, of which the first one
                                                  ! comes first on the half-edge of the lower number
-    real(wp) :: part(2,mesh%nh)                  ! where they are on that half-edge, 0: none
+    real(wp), allocatable :: part(:,:)           ! where they are on that half-edge, 0: none
     type(outline_type) :: outline
     character(:), allocatable :: message
     integer :: f, h, k, n, nv
 
+    allocate (part(2,mesh%nh))
     call find_middles(mesh, part)
     nv = mesh%nv
-    middle = 0
+    allocate (middle(2,mesh%nh), source=0)
     allocate (x(3,mesh%nv + 2*mesh%nh + mesh%nf))
     x(:,1:nv) = mesh%x
     do h = 1, mesh%nh

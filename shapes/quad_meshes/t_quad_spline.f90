@@ -89,11 +89,12 @@ contains
     type :: cut_list
       real(wp), allocatable :: at(:)
     end type cut_list
-    type(cut_list) :: cuts(2,spline%mesh%nf)
+    type(cut_list), allocatable :: cuts(:,:)
     real(wp) :: cut(2), high(2), low(2), x(2)
     integer :: d, f, i, j, k, m
 
     associate (mesh => spline%mesh)
+      allocate (cuts(2,mesh%nf))
       do f = 1, mesh%nf
         do d = 1, 2
           cuts(d,f)%at = [0.0_wp, mesh%size(d,f)]
@@ -169,9 +170,10 @@ contains
     type(hit_type), intent(in) :: hits(:)
 
     real(wp) :: bx(0:3), by(0:3), high(2), low(2)
-    integer :: e, first(spline%mesh%nf+1), i, j, k, p(2)
+    integer, allocatable :: first(:)
+    integer :: e, i, j, k, p(2)
 
-    first = 0
+    allocate (first(spline%mesh%nf+1), source=0)
     do e = spline%ne, 1, -1
       first(spline%face(e)) = e
     end do
@@ -324,7 +326,11 @@ contains
     subroutine renumber(ids)
       integer, intent(inout) :: ids(:)
 
-      where (ids > 0) ids = new(max(ids, 1))
+      integer :: j
+
+      do j = 1, size(ids)
+        if (ids(j) > 0) ids(j) = new(ids(j))
+      end do
     end subroutine renumber
   end subroutine drop_unused
 
