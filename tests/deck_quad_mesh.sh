@@ -16,35 +16,7 @@ awk -F, 'FNR > 1 { energy[FILENAME] = $NF } END { exit !(energy["local.out/histo
   local.out/history.csv coarse.out/history.csv || { echo 'local refinement did not add energy'; failures=$((failures + 1)); }
 
 # The same plate from its file.
-cat >again.inp <<'EOF'
-FEAP * * the plate from its file
-0 0 0 3 3
-
-T-SPline FILE="plate.out/plate.iga" MATErial=1
-
-MATErial 1
-  SHELl
-  ELAStic ISOTropic 1e6 0.3
-  THICkness 0.2
-  SMALl
-
-CLAMp plate.edge1
-
-FORCe
-  tip 0 0 1e-3
-
-HISTory tip SET=tip DISPlacement
-
-END
-BATCh
-  DT,,1
-  TIME
-  TANG,,1
-END
-STOP
-EOF
-solve again again.inp
-expect again tip_uz "$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "tip_uz") c = i } { v = $c } END { print v }' plate.out/history.csv)" 1e-15
+again_from_file plate.out/plate.iga
 
 # A closed sphere of eight extraordinary points under pressure: membrane theory.
 solve sphere "$verify/sphere_pressure.inp" n=2

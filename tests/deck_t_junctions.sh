@@ -14,35 +14,7 @@ solve plate "$verify/t_mesh_plate.inp" n=1
 expect plate tip_uz 2.05030e-4 1e-9
 
 # The same plate from its file.
-cat >again.inp <<'EOD'
-FEAP * * the plate from its file
-0 0 0 3 3
-
-T-SPline FILE="plate.out/plate.iga" MATErial=1
-
-MATErial 1
-  SHELl
-  ELAStic ISOTropic 1e6 0.3
-  THICkness 0.2
-  SMALl
-
-CLAMp plate.edge1
-
-FORCe
-  tip 0 0 1e-3
-
-HISTory tip SET=tip DISPlacement
-
-END
-BATCh
-  DT,,1
-  TIME
-  TANG,,1
-END
-STOP
-EOD
-solve again again.inp
-expect again tip_uz "$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "tip_uz") c = i } { v = $c } END { print v }' plate.out/history.csv)" 1e-15
+again_from_file plate.out/plate.iga
 
 # The patch test: uniform stress in the plane, on the mesh and on the mesh divided once.
 cp "$verify/t_mesh_plate.obj" .

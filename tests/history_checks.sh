@@ -27,3 +27,35 @@ expect() { # label column expected tolerance [step]: in the last row of the hist
       }
     }' "$1.out/history.csv" || failures=$((failures + 1))
 }
+
+again_from_file() { # file: a triangular plate that a run has written, with its edge1 clamped and a force at its tip, solved again
+  cat >again.inp <<EOF
+FEAP * * the plate from its file
+0 0 0 3 3
+
+T-SPline FILE="$1" MATErial=1
+
+MATErial 1
+  SHELl
+  ELAStic ISOTropic 1e6 0.3
+  THICkness 0.2
+  SMALl
+
+CLAMp plate.edge1
+
+FORCe
+  tip 0 0 1e-3
+
+HISTory tip SET=tip DISPlacement
+
+END
+BATCh
+  DT,,1
+  TIME
+  TANG,,1
+END
+STOP
+EOF
+  solve again again.inp
+  expect again tip_uz "$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "tip_uz") c = i } { v = $c } END { print v }' "${1%/*}/history.csv")" 1e-15
+}

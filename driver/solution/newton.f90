@@ -167,7 +167,7 @@ contains
     if (status == no_convergence .and. report%iterations >= settings%most_iterations) then
       report%fault = 'no convergence within the allowed iterations'
       if (any(report%records%cholesky_failed)) report%fault = report%fault// &
-        '; the tangent is not positive definite there, as at a limit point'
+        '; the tangent is not positive definite there, as at a limit point, which PATH AUTO may pass'
     end if
   end subroutine solve_increment
 
